@@ -1,0 +1,1 @@
+//! A Bevy plugin that turns drawn stick figures into posed 3D bodies.

@@ -1,0 +1,3 @@
+//! The `stick3d` command.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! The networks, the model file and the frame-rate decoder of stick3d.

@@ -1,0 +1,1 @@
+//! Rigs, poses, data sets, training, evaluation and baking for stick3d.

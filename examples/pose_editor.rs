@@ -1,0 +1,3 @@
+//! The pose editor.
+
+fn main() {}
