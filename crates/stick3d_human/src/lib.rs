@@ -1,1 +1,1 @@
-//! The trained model of the human, embedded.
+//! The trained model of the human, embedded: nothing but its bytes.

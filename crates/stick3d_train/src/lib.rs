@@ -1,1 +1,12 @@
 //! Rigs, poses, data sets, training, evaluation and baking for stick3d.
+//!
+//! Knows [`stick3d_figure`], [`stick3d_model`] and Burn's training side. Knows no Bevy: a game that plays never
+//! compiles this crate.
+
+pub mod bake;
+pub mod dataset;
+pub mod evaluate;
+pub mod pose;
+pub mod render;
+pub mod rig;
+pub mod training;

@@ -1,0 +1,1 @@
+//! Baking the shipped bodies from their free sources.

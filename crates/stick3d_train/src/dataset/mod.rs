@@ -1,0 +1,1 @@
+//! Training pairs: posed bodies and the sketches of them.

@@ -1,0 +1,1 @@
+//! Poses: controls, libraries and the sampler.

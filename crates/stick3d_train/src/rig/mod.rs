@@ -1,0 +1,1 @@
+//! Skinned meshes with a skeleton: reading, writing and posing them.

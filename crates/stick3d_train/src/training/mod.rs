@@ -1,0 +1,1 @@
+//! The three training stages of the paper (section 4.3).
