@@ -1,1 +1,89 @@
 //! Skinned meshes with a skeleton: reading, writing and posing them.
+//!
+//! A [`Rig`] is a triangle mesh at rest, a [`Skeleton`], and for every vertex the bones it follows.
+//! [`Rig::skin`] moves the mesh into a [`Pose`] with dual quaternions, which keep the volume of
+//! shoulders, hips and knees where linear blending would collapse it.
+//!
+//! Spaces: everything is in *model space*: right-handed, metres, +Y up, the figure faces +Z.
+//! Colours are linear (not sRGB) bytes, exactly as glTF's `COLOR_0` defines them.
+
+mod error;
+mod read;
+mod regressor;
+mod skeleton;
+mod skinning;
+mod write;
+
+pub use error::RigError;
+pub use regressor::regressor;
+pub use skeleton::{Bone, Pose, Skeleton};
+use stick3d_figure::mesh::TriangleMesh;
+
+/// The largest number of bones that one vertex may follow: two glTF attribute sets of four.
+pub const MAX_INFLUENCES: usize = 8;
+
+/// A mesh at rest, its skeleton, and which bones move which vertex.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rig {
+    /// The name of the body, as it stands in the file.
+    pub name: String,
+    /// Who made the body and under which licence, as it stands in the file.
+    pub copyright: Option<String>,
+    /// The bones, parents before children.
+    pub skeleton: Skeleton,
+    /// The surface at rest, model space, metres.
+    pub mesh: TriangleMesh,
+    /// One colour per vertex: linear red, green, blue and coverage, 255 = 1 (glTF `COLOR_0`).
+    pub colors: Vec<[u8; 4]>,
+    /// Per vertex: (bone, weight), strongest first, at most [`MAX_INFLUENCES`], weights summing to 1.
+    pub influences: Vec<Vec<(u16, f32)>>,
+}
+
+impl Rig {
+    /// Checks that the parts fit together: lengths, bone numbers, vertex numbers, weights.
+    ///
+    /// # Errors
+    /// [`RigError::Inconsistent`] names the first part that does not fit.
+    pub fn validate(&self) -> Result<(), RigError> {
+        let inconsistent = |what: String| Err(RigError::Inconsistent { what });
+        let vertices = self.mesh.positions.len();
+        if self.colors.len() != vertices || self.influences.len() != vertices {
+            return inconsistent(format!(
+                "{vertices} positions, {} colours and {} influence lists: the numbers must agree",
+                self.colors.len(),
+                self.influences.len()
+            ));
+        }
+        if let Some(vertex) = self.mesh.positions.iter().position(|p| !p.is_finite()) {
+            return inconsistent(format!("vertex {vertex} is not at a finite position"));
+        }
+        if let Some(triangle) = self
+            .mesh
+            .triangles
+            .iter()
+            .position(|t| t.iter().any(|&v| v as usize >= vertices))
+        {
+            return inconsistent(format!(
+                "triangle {triangle} uses a vertex past the last one, {vertices}"
+            ));
+        }
+        self.skeleton.validate()?;
+        for (vertex, list) in self.influences.iter().enumerate() {
+            let sum: f32 = list.iter().map(|&(_, weight)| weight).sum();
+            let bones = self.skeleton.bones.len();
+            if list.is_empty()
+                || list.len() > MAX_INFLUENCES
+                || (sum - 1.0).abs() > 1e-3
+                || list
+                    .iter()
+                    .any(|&(b, w)| b as usize >= bones || !w.is_finite() || w < 0.0)
+            {
+                return inconsistent(format!(
+                    "vertex {vertex}: influences must be 1 to {MAX_INFLUENCES} existing bones \
+                     with weights summing to 1, but are {list:?}"
+                ));
+            }
+        }
+        Ok(())
+    }
+}
