@@ -1,0 +1,108 @@
+//! Reading the base mesh: an OBJ file of quads in named groups.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+/// The vertices and the named groups of quads of an OBJ file.
+pub(super) struct Obj {
+    /// The vertices, in the file's unit.
+    pub(super) positions: Vec<DVec3>,
+    /// Per group its quads, vertices counted from 0.
+    pub(super) groups: BTreeMap<String, Vec<[u32; 4]>>,
+}
+
+impl Obj {
+    /// Parses the text; lines other than `v`, `g` and `f` do not matter here.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let mut obj = Self {
+            positions: Vec::new(),
+            groups: BTreeMap::new(),
+        };
+        let mut group = String::new();
+        for (number, line) in (1..).zip(text.lines()) {
+            let mut words = line.split_whitespace();
+            let fault = |what: &str| format!("line {number}: {what}");
+            match words.next() {
+                Some("v") => {
+                    let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
+                    let point: [f64; 3] = numbers
+                        .try_into()
+                        .map_err(|_| fault("a vertex needs three numbers"))?;
+                    obj.positions.push(point.into());
+                }
+                Some("g") => words.next().unwrap_or_default().clone_into(&mut group),
+                Some("f") => {
+                    let corners: Vec<u32> = words
+                        .filter_map(|word| {
+                            word.split('/').next()?.parse::<u32>().ok()?.checked_sub(1)
+                        })
+                        .collect();
+                    let quad: [u32; 4] = corners
+                        .try_into()
+                        .map_err(|_| fault("a face needs four vertices"))?;
+                    if quad
+                        .iter()
+                        .any(|&corner| corner as usize >= obj.positions.len())
+                    {
+                        return Err(fault("a face uses a vertex that does not exist"));
+                    }
+                    obj.groups.entry(group.clone()).or_default().push(quad);
+                }
+                _ => {}
+            }
+        }
+        Ok(obj)
+    }
+
+    /// The quads of a group.
+    pub(super) fn quads(&self, group: &str) -> Result<&[[u32; 4]], String> {
+        self.groups
+            .get(group)
+            .map(Vec::as_slice)
+            .ok_or_else(|| format!("there is no group `{group}`"))
+    }
+
+    /// The mean of a group's vertices: for a cube round a joint, where the joint is.
+    pub(super) fn group_center(&self, group: &str, at: &[DVec3]) -> Result<DVec3, String> {
+        let mut vertices: Vec<u32> = self.quads(group)?.iter().flatten().copied().collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let sum: DVec3 = vertices.iter().map(|&vertex| at[vertex as usize]).sum();
+        Ok(sum / vertices.len().max(1) as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: &str =
+        "# a square\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\ng square\nf 1/1 2/2 3/3 4/4\n";
+
+    #[test]
+    fn groups_and_their_centers() {
+        let obj = Obj::parse(SQUARE).unwrap();
+        assert_eq!(obj.quads("square").unwrap(), [[0, 1, 2, 3]]);
+        let center = obj.group_center("square", &obj.positions).unwrap();
+        assert_eq!(center, DVec3::new(1.0, 1.0, 0.0));
+        assert!(obj.quads("circle").unwrap_err().contains("circle"));
+    }
+
+    #[test]
+    fn faults_name_their_line() {
+        for (text, line) in [("v 0 0\n", "line 1"), ("v 0 0 0\nf 1 1 1\n", "line 2")] {
+            assert!(
+                Obj::parse(text)
+                    .err()
+                    .is_some_and(|what| what.starts_with(line))
+            );
+        }
+        let missing = SQUARE.replace("4/4", "5/4");
+        assert!(
+            Obj::parse(&missing)
+                .err()
+                .is_some_and(|what| what.contains("does not exist"))
+        );
+    }
+}
