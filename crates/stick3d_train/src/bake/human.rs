@@ -80,25 +80,28 @@ pub fn build(path: &Path) -> Result<Rig, BakeError> {
     for bone in &mut skeleton.bones {
         bone.head = place.apply(bone.head.as_dvec3());
     }
-    Ok(Rig {
-        name: "human".into(),
-        copyright: Some(COPYRIGHT.into()),
-        skeleton,
-        mesh: TriangleMesh {
-            positions: surface
-                .positions
-                .iter()
-                .map(|&point| place.apply(point))
-                .collect(),
-            triangles: surface.triangles,
-        },
-        colors,
-        influences: surface
-            .influences
+    let mesh = TriangleMesh {
+        positions: surface
+            .positions
             .iter()
-            .map(|list| strongest(list))
+            .map(|&point| place.apply(point))
             .collect(),
-    })
+        triangles: surface.triangles,
+    };
+    let influences = surface
+        .influences
+        .iter()
+        .map(|list| strongest(list))
+        .collect();
+    let copyright = Some(COPYRIGHT.into());
+    Ok(Rig::new(
+        "human".into(),
+        copyright,
+        skeleton,
+        mesh,
+        colors,
+        influences,
+    )?)
 }
 
 /// From the source's decimetres to metres: exactly as tall as wanted, soles on the ground.

@@ -1,12 +1,13 @@
 //! Skinned meshes with a skeleton: reading, writing and posing them.
 //!
 //! A [`Rig`] is a triangle mesh at rest, a [`Skeleton`], and for every vertex the bones it follows.
-//! [`Rig::skin`] moves the mesh into a [`Pose`] with dual quaternions, which keep the volume of
-//! shoulders, hips and knees where linear blending would collapse it.
+//! [`Rig::skin`] moves the mesh into a [`Pose`], each vertex about a centre of rotation of its own, which
+//! keeps the volume of shoulders, hips and knees where linear blending would collapse it.
 //!
 //! Spaces: everything is in *model space*: right-handed, metres, +Y up, the figure faces +Z.
 //! Colours are linear (not sRGB) bytes, exactly as glTF's `COLOR_0` defines them.
 
+mod centers;
 mod error;
 mod read;
 mod regressor;
@@ -15,8 +16,10 @@ mod skinning;
 mod write;
 
 pub use error::RigError;
+use glam::Vec3;
 pub use regressor::regressor;
 pub use skeleton::{Bone, Pose, Skeleton};
+pub use skinning::Skinning;
 use stick3d_figure::mesh::TriangleMesh;
 
 /// The largest number of bones that one vertex may follow: two glTF attribute sets of four.
@@ -37,9 +40,37 @@ pub struct Rig {
     pub colors: Vec<[u8; 4]>,
     /// Per vertex: (bone, weight), strongest first, at most [`MAX_INFLUENCES`], weights summing to 1.
     pub influences: Vec<Vec<(u16, f32)>>,
+    /// Per vertex the point that it turns about, model space at rest: see [`Rig::new`].
+    centers: Vec<Vec3>,
 }
 
 impl Rig {
+    /// Puts a rig together and finds every vertex' centre of rotation (about a second for 12,500 vertices).
+    ///
+    /// # Errors
+    /// [`RigError::Inconsistent`] names the first part that does not fit to the others.
+    pub fn new(
+        name: String,
+        copyright: Option<String>,
+        skeleton: Skeleton,
+        mesh: TriangleMesh,
+        colors: Vec<[u8; 4]>,
+        influences: Vec<Vec<(u16, f32)>>,
+    ) -> Result<Self, RigError> {
+        let mut rig = Self {
+            name,
+            copyright,
+            skeleton,
+            mesh,
+            colors,
+            influences,
+            centers: Vec::new(),
+        };
+        rig.validate()?;
+        rig.centers = centers::centers_of_rotation(&rig.mesh, &rig.influences);
+        Ok(rig)
+    }
+
     /// Checks that the parts fit together: lengths, bone numbers, vertex numbers, weights.
     ///
     /// # Errors

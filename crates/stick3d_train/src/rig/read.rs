@@ -36,6 +36,7 @@ impl Rig {
             },
             colors: Vec::new(),
             influences: Vec::new(),
+            centers: Vec::new(),
         };
         let bind = bind_matrices(&skin, &blob, &globals)?;
         let skinned = document.nodes().filter(|node| {
@@ -50,8 +51,16 @@ impl Rig {
                 rig.append(&primitive, &blob, &bind, &bone_of_joint)?;
             }
         }
-        rig.validate()?;
-        Ok(rig)
+        let Self {
+            name,
+            copyright,
+            skeleton,
+            mesh,
+            colors,
+            influences,
+            ..
+        } = rig;
+        Self::new(name, copyright, skeleton, mesh, colors, influences)
     }
 
     fn append(

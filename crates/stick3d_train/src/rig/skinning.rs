@@ -1,12 +1,24 @@
-//! Moving the surface with the bones: dual quaternions, and linear blending to compare with.
+//! Moving the surface with the bones.
 //!
-//! Dual quaternion skinning: Kavan, Collins, Zara, O'Sullivan, "Geometric Skinning with Approximate
-//! Dual Quaternion Blending", ACM Transactions on Graphics 27 (2008), algorithm 1 with the sign
-//! test of section 4.1 made against the vertex's strongest bone.
+//! Three ways, from the simplest: linear blending, which collapses joints; dual quaternions (Kavan,
+//! Collins, Zara, O'Sullivan, "Geometric Skinning with Approximate Dual Quaternion Blending", ACM
+//! Transactions on Graphics 27, 2008), which keep their volume but swell raised shoulders; and
+//! optimised centres of rotation (Le, Hodgins, 2016), which do neither and are what [`Rig::skin`] uses.
 
 use glam::{Quat, Vec3, Vec4};
 
 use super::{Pose, Rig};
+
+/// How the motions of a vertex' bones are blended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Skinning {
+    /// The weighted mean of the bones' images of the vertex.
+    Linear,
+    /// The weighted mean of the bones' motions as dual quaternions.
+    DualQuaternion,
+    /// The weighted mean of the bones' rotations, about the vertex' own centre of rotation.
+    CenterOfRotation,
+}
 
 /// A rigid motion as a unit dual quaternion: `real` the rotation, `dual` half translation times it.
 #[derive(Debug, Clone, Copy)]
@@ -46,57 +58,26 @@ impl Rig {
     /// `out` is resized to the number of vertices; called again with the same vector it allocates
     /// nothing but a few bytes per bone.
     pub fn skin(&self, pose: &Pose, out: &mut Vec<Vec3>) {
-        let motions: Vec<DualQuat> = self
-            .rigid_motions(pose)
-            .map(|(turn, shift)| DualQuat::new(turn, shift))
-            .collect();
-        out.clear();
-        out.extend(
-            self.mesh
-                .positions
-                .iter()
-                .zip(&self.influences)
-                .map(|(&point, list)| {
-                    let mut strongest = Vec4::ZERO;
-                    let mut blend = DualQuat {
-                        real: Vec4::ZERO,
-                        dual: Vec4::ZERO,
-                    };
-                    for (rank, &(bone, weight)) in list.iter().enumerate() {
-                        let motion = motions[bone as usize];
-                        if rank == 0 {
-                            strongest = motion.real;
-                        }
-                        // q and -q are one rotation; blending must take the short way round.
-                        let weight = if motion.real.dot(strongest) < 0.0 {
-                            -weight
-                        } else {
-                            weight
-                        };
-                        blend.real += motion.real * weight;
-                        blend.dual += motion.dual * weight;
-                    }
-                    blend.apply(point)
-                }),
-        );
+        self.skin_with(Skinning::CenterOfRotation, pose, out);
     }
 
-    /// Writes the posed vertices of linear blend skinning into `out`: what [`Rig::skin`] is measured against.
-    pub fn skin_linear(&self, pose: &Pose, out: &mut Vec<Vec3>) {
+    /// [`Rig::skin`] by a method of the caller's choice, to compare them.
+    pub fn skin_with(&self, method: Skinning, pose: &Pose, out: &mut Vec<Vec3>) {
         let motions: Vec<(Quat, Vec3)> = self.rigid_motions(pose).collect();
+        let blended = |index: usize| -> Vec3 {
+            let (point, list) = (self.mesh.positions[index], &self.influences[index]);
+            match method {
+                Skinning::Linear => linear(&motions, list, point),
+                Skinning::DualQuaternion => dual_quaternion(&motions, list, point),
+                Skinning::CenterOfRotation => {
+                    let center = self.centers[index];
+                    let turn = mean_rotation(&motions, list);
+                    linear(&motions, list, center) + turn * (point - center)
+                }
+            }
+        };
         out.clear();
-        out.extend(
-            self.mesh
-                .positions
-                .iter()
-                .zip(&self.influences)
-                .map(|(&point, list)| {
-                    list.iter().fold(Vec3::ZERO, |sum, &(bone, weight)| {
-                        let (turn, shift) = motions[bone as usize];
-                        sum + weight * (turn * point + shift)
-                    })
-                }),
-        );
+        out.extend((0..self.mesh.positions.len()).map(blended));
     }
 
     /// Per bone the motion `x -> turn * x + shift` from rest to pose.
@@ -107,4 +88,49 @@ impl Rig {
             .zip(&self.skeleton.bones)
             .map(|((turn, head), bone)| (turn, head - turn * bone.head))
     }
+}
+
+fn linear(motions: &[(Quat, Vec3)], list: &[(u16, f32)], point: Vec3) -> Vec3 {
+    list.iter().fold(Vec3::ZERO, |sum, &(bone, weight)| {
+        let (turn, shift) = motions[usize::from(bone)];
+        sum + weight * (turn * point + shift)
+    })
+}
+
+/// The weight of a rotation in a blend: q and -q are one rotation, and the blend takes the short way
+/// round, seen from the strongest bone.
+fn signed(weight: f32, turn: Quat, strongest: Quat) -> f32 {
+    if turn.dot(strongest) < 0.0 {
+        -weight
+    } else {
+        weight
+    }
+}
+
+fn mean_rotation(motions: &[(Quat, Vec3)], list: &[(u16, f32)]) -> Quat {
+    let strongest = list
+        .first()
+        .map_or(Quat::IDENTITY, |&(bone, _)| motions[usize::from(bone)].0);
+    let sum = list.iter().fold(Vec4::ZERO, |sum, &(bone, weight)| {
+        let turn = motions[usize::from(bone)].0;
+        sum + Vec4::from(turn) * signed(weight, turn, strongest)
+    });
+    Quat::from_vec4(sum.normalize_or(Vec4::from(strongest)))
+}
+
+fn dual_quaternion(motions: &[(Quat, Vec3)], list: &[(u16, f32)], point: Vec3) -> Vec3 {
+    let strongest = list
+        .first()
+        .map_or(Quat::IDENTITY, |&(bone, _)| motions[usize::from(bone)].0);
+    let mut blend = DualQuat {
+        real: Vec4::ZERO,
+        dual: Vec4::ZERO,
+    };
+    for &(bone, weight) in list {
+        let (turn, shift) = motions[usize::from(bone)];
+        let (motion, weight) = (DualQuat::new(turn, shift), signed(weight, turn, strongest));
+        blend.real += motion.real * weight;
+        blend.dual += motion.dual * weight;
+    }
+    blend.apply(point)
 }
