@@ -3,8 +3,8 @@
 use std::io::{self, Cursor, Read as _};
 use std::path::Path;
 
-use zip::ZipArchive;
-use zip::result::ZipError;
+use flate2::read::{DeflateDecoder, GzDecoder};
+use zip::{CompressionMethod, ZipArchive};
 
 use super::{BakeError, sha256_hex};
 
@@ -55,7 +55,7 @@ impl Wheel {
             return Ok(None);
         };
         let mut text = String::new();
-        flate2::read::GzDecoder::new(packed.as_slice())
+        GzDecoder::new(packed.as_slice())
             .read_to_string(&mut text)
             .map_err(|source| BakeError::Entry {
                 entry: entry.into(),
@@ -79,14 +79,21 @@ impl Wheel {
             entry: entry.into(),
             source,
         };
-        match self.archive.by_name(entry) {
-            Ok(mut file) => {
-                let mut bytes = Vec::new();
-                file.read_to_end(&mut bytes).map_err(failed)?;
-                Ok(Some(bytes))
-            }
-            Err(ZipError::FileNotFound) => Ok(None),
-            Err(error) => Err(failed(error.into())),
+        let Some(index) = self.archive.index_for_name(entry) else {
+            return Ok(None);
+        };
+        let mut file = self
+            .archive
+            .by_index_raw(index)
+            .map_err(|error| failed(error.into()))?;
+        let deflated = file.compression() == CompressionMethod::DEFLATE;
+        let mut bytes = Vec::new();
+        if deflated {
+            DeflateDecoder::new(&mut file).read_to_end(&mut bytes)
+        } else {
+            file.read_to_end(&mut bytes)
         }
+        .map_err(failed)?;
+        Ok(Some(bytes))
     }
 }
