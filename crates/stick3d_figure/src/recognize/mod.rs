@@ -1,0 +1,170 @@
+//! Ordered recognition: strokes that follow a figure's sketch path become a sketch.
+//!
+//! A person draws the path as one long line, one stroke per bone, one stroke per limb, or any mix. Bones that the
+//! path retraces (elbow back to neck) may be drawn or skipped. Corners are not looked for one by one: all path points
+//! are placed together, at the samples where straight pieces between them explain the ink best.
+
+mod ink;
+mod plan;
+mod search;
+
+use glam::Vec2;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::figure::Figure;
+use crate::sketch::{Sketch, SketchError};
+use crate::stroke::Stroke;
+use ink::Ink;
+use plan::Plan;
+use search::{Reading, Search};
+
+/// How much likelier a reading of part of the path must be than the best one of the whole path before finished
+/// strokes are taken for unfinished ones.
+const COMPLETE_BONUS: f32 = 2.0;
+
+/// Why strokes are no drawing of a figure.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum RecognizeError {
+    /// There is no stroke of any size.
+    #[error("nothing is drawn: {strokes} strokes, none of which has two different points")]
+    Empty {
+        /// How many strokes came.
+        strokes: usize,
+    },
+    /// The strokes cannot be the whole path.
+    #[error(
+        "the strokes reach only {reached} of the {path_len} points of figure \"{figure}\"; the next joint to draw is \"{next}\""
+    )]
+    Incomplete {
+        /// The figure.
+        figure: String,
+        /// How many path points were found.
+        reached: usize,
+        /// How many there are.
+        path_len: usize,
+        /// The joint that comes next.
+        next: String,
+    },
+    /// What was recognised is no sketch.
+    #[error(transparent)]
+    Sketch(#[from] SketchError),
+}
+
+/// Is the last stroke finished?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Pen {
+    /// No: its last bone may be half drawn.
+    Down,
+    /// Yes: it ends at a joint.
+    Up,
+}
+
+/// How far a drawing has come.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Progress {
+    /// Per joint: where it was drawn, canvas pixels, y up; none where it was not yet.
+    pub placed: Vec<Option<Vec2>>,
+    /// The joint to which the next bone (or the one being drawn) leads; none when complete.
+    pub next_joint: Option<usize>,
+    /// The part of the path that is drawn, from 0 to 1, by the length of its bones in the template.
+    pub fraction: f32,
+    /// All joints are placed and the path is at its end.
+    pub complete: bool,
+}
+
+/// The sketch that finished strokes show, canvas pixels, y up. The strokes are taken for the whole path.
+///
+/// # Errors
+/// [`RecognizeError`] when there is too little ink for the path.
+pub fn recognize(figure: &Figure, strokes: &[Stroke]) -> Result<Sketch, RecognizeError> {
+    let empty = || RecognizeError::Empty {
+        strokes: strokes.len(),
+    };
+    let ink = Ink::new(strokes).ok_or_else(empty)?;
+    let plan = Plan::new(figure);
+    let search = Search::run(&plan, &ink);
+    let Some(reading) = search.complete() else {
+        let progress = progress_of(figure, &plan, &ink, search.any());
+        let joint = progress.next_joint.unwrap_or(figure.root);
+        return Err(RecognizeError::Incomplete {
+            figure: figure.name.clone(),
+            reached: (progress.fraction * plan.end() as f32) as usize + 1,
+            path_len: figure.path_len(),
+            next: figure.joints[joint].name.clone(),
+        });
+    };
+    let placed = placed_joints(&plan, &ink, &reading);
+    Ok(Sketch::new(
+        figure,
+        placed.into_iter().map(Option::unwrap_or_default).collect(),
+    )?)
+}
+
+/// How far the strokes so far have come along the path.
+pub fn progress(figure: &Figure, strokes: &[Stroke], pen: Pen) -> Progress {
+    let plan = Plan::new(figure);
+    let Some(ink) = Ink::new(strokes) else {
+        return progress_of_nothing(figure);
+    };
+    let search = Search::run(&plan, &ink);
+    let reading = match pen {
+        Pen::Down => search.unfinished(),
+        Pen::Up => match (search.complete(), search.any()) {
+            (Some(complete), Some(any)) if complete.cost <= any.cost + COMPLETE_BONUS => {
+                Some(complete)
+            }
+            (_, any) => any,
+        },
+    };
+    progress_of(figure, &plan, &ink, reading)
+}
+
+fn progress_of_nothing(figure: &Figure) -> Progress {
+    Progress {
+        placed: vec![None; figure.joint_count()],
+        next_joint: figure.path.first().copied(),
+        fraction: 0.0,
+        complete: false,
+    }
+}
+
+fn progress_of(figure: &Figure, plan: &Plan, ink: &Ink, reading: Option<Reading>) -> Progress {
+    let Some(reading) = reading else {
+        return progress_of_nothing(figure);
+    };
+    let reached = reading.visits.last().map_or(0, |visit| visit.path_index);
+    let length = |until: usize| -> f32 {
+        plan.steps[..until]
+            .iter()
+            .map(|step| step.template_length)
+            .sum()
+    };
+    let begun = plan
+        .steps
+        .get(reached)
+        .map_or(0.0, |step| step.template_length * reading.begun);
+    Progress {
+        placed: placed_joints(plan, ink, &reading),
+        next_joint: plan.steps.get(reached).map(|step| step.joint),
+        fraction: ((length(reached) + begun) / length(plan.end())).clamp(0.0, 1.0),
+        complete: reached == plan.end(),
+    }
+}
+
+/// Per joint the mean of the places it was drawn at.
+fn placed_joints(plan: &Plan, ink: &Ink, reading: &Reading) -> Vec<Option<Vec2>> {
+    let mut sums = vec![(Vec2::ZERO, 0.0_f32); plan.joint_count];
+    for visit in &reading.visits {
+        let sum = &mut sums[plan.path[visit.path_index]];
+        sum.0 += ink.samples[visit.sample];
+        sum.1 += 1.0;
+    }
+    sums.into_iter()
+        .map(|(sum, count)| (count > 0.0).then(|| sum / count))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests;

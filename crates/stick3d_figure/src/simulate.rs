@@ -1,0 +1,170 @@
+//! A person who draws the human, for tests: plausible poses, styles of drawing, an unsteady hand.
+
+use glam::{Quat, Vec2, Vec3};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::figure::Figure;
+use crate::stroke::{Stroke, StrokePoint};
+
+/// How a drawing is cut into strokes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Style {
+    OneLine,
+    StrokePerBone,
+    StrokePerBoneWithRetraces,
+    StrokePerLimb,
+    Mix,
+}
+
+pub(crate) const STYLES: [Style; 5] = [
+    Style::OneLine,
+    Style::StrokePerBone,
+    Style::StrokePerBoneWithRetraces,
+    Style::StrokePerLimb,
+    Style::Mix,
+];
+
+/// How steadily and quickly it is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hand {
+    pub(crate) height_px: f32,
+    pub(crate) spacing_px: f32,
+    pub(crate) jitter_px: f32,
+    /// How far strokes start beside the joint they mean.
+    pub(crate) aim_px: f32,
+    pub(crate) speed_px_per_s: f32,
+}
+
+impl Default for Hand {
+    fn default() -> Self {
+        Self {
+            height_px: 450.0,
+            spacing_px: 4.0,
+            jitter_px: 2.0,
+            aim_px: 6.0,
+            speed_px_per_s: 700.0,
+        }
+    }
+}
+
+pub(crate) fn rng(seed: u64) -> ChaCha8Rng {
+    ChaCha8Rng::seed_from_u64(seed)
+}
+
+fn in_cone(rng: &mut impl Rng, axis: Vec3, max_deg: f32) -> Vec3 {
+    let angle = rng.random_range(0.0..max_deg.to_radians());
+    let side = Quat::from_axis_angle(axis, rng.random_range(0.0..std::f32::consts::TAU))
+        * axis.any_orthonormal_vector();
+    axis * angle.cos() + side * angle.sin()
+}
+
+/// The joints of the human in a random pose, metres: bones turn in three dimensions and are projected.
+pub(crate) fn pose(rng: &mut impl Rng) -> Vec<Vec2> {
+    loop {
+        let up = in_cone(rng, Vec3::Y, 25.0);
+        let abdomen = Vec3::ZERO;
+        let neck = up * 0.54;
+        let forehead = neck + in_cone(rng, up, 25.0) * 0.2;
+        let yaw = Quat::from_rotation_y(rng.random_range(-0.8..0.8));
+        let mut points = vec![forehead, neck, abdomen];
+        for side in [-1.0, 1.0] {
+            let shoulder = neck + yaw * Vec3::new(side * 0.17, -0.07, 0.0);
+            let upper = in_cone(rng, Vec3::new(side * 0.5, -0.8, 0.2).normalize(), 110.0);
+            let elbow = shoulder + upper * 0.28;
+            let hand = elbow + in_cone(rng, upper, 110.0) * 0.33;
+            let thigh = in_cone(rng, Vec3::new(side * 0.2, -1.0, 0.2).normalize(), 60.0);
+            let knee = abdomen + yaw * Vec3::new(side * 0.09, -0.03, 0.0) + thigh * 0.41;
+            let foot = knee + in_cone(rng, thigh, 75.0) * 0.45;
+            points.extend([elbow, hand, knee, foot]);
+        }
+        let flat: Vec<Vec2> = points.iter().map(|p| p.truncate()).collect();
+        let drawable =
+            Figure::human().bones.iter().all(|&[a, b]| flat[a].distance(flat[b]) > 0.08);
+        if drawable {
+            return flat;
+        }
+    }
+}
+
+/// The path indices of each stroke, first and last included.
+pub(crate) fn cuts(rng: &mut impl Rng, style: Style) -> Vec<(usize, usize)> {
+    match style {
+        Style::OneLine => vec![(0, 16)],
+        Style::StrokePerBone => [0, 1, 2, 5, 6, 9, 10, 11, 14, 15].map(|k| (k, k + 1)).into(),
+        Style::StrokePerBoneWithRetraces => (0..16).map(|k| (k, k + 1)).collect(),
+        Style::StrokePerLimb => vec![(0, 1), (1, 3), (5, 7), (9, 10), (10, 12), (14, 16)],
+        Style::Mix => {
+            // Lift at random joints; skip a way back only after lifting at a hand or foot.
+            let mut strokes = Vec::new();
+            let mut start = 0;
+            for k in 1..16 {
+                if rng.random_bool(0.35) {
+                    strokes.push((start, k));
+                    start = k;
+                    if [3, 7, 12].contains(&k) && rng.random_bool(0.6) {
+                        start = k + 2;
+                    }
+                }
+            }
+            strokes.retain(|(a, b)| a < b);
+            let mut at = 0;
+            strokes.retain_mut(|(a, b)| {
+                *a = (*a).max(at);
+                at = *b;
+                a < b
+            });
+            let start = start.max(strokes.last().map_or(0, |s| s.1));
+            strokes.push((start, 16));
+            strokes
+        }
+    }
+}
+
+/// The strokes of a drawing of `joints_px`.
+pub(crate) fn draw(
+    rng: &mut impl Rng,
+    joints_px: &[Vec2],
+    cuts: &[(usize, usize)],
+    hand: Hand,
+) -> Vec<Stroke> {
+    let path = &Figure::human().path;
+    let mut time_s = 0.0;
+    let wobble = |rng: &mut ChaCha8Rng, size: f32| {
+        Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * size
+    };
+    let mut own = ChaCha8Rng::from_rng(rng);
+    cuts.iter()
+        .map(|&(from, to)| {
+            let corners: Vec<Vec2> = (from..=to)
+                .map(|k| joints_px[path[k]] + wobble(&mut own, hand.aim_px))
+                .collect();
+            let mut stroke = Stroke::default();
+            time_s += 0.3;
+            for pair in corners.windows(2) {
+                let length = pair[0].distance(pair[1]);
+                let steps = (length / hand.spacing_px).ceil().max(1.0);
+                // A slight bow, since nobody draws a straight line.
+                let bow = (pair[1] - pair[0]).perp() * own.random_range(-0.04..0.04);
+                for i in 0..=steps as usize {
+                    let t = i as f32 / steps;
+                    let p = pair[0].lerp(pair[1], t) + bow * (4.0 * t * (1.0 - t));
+                    stroke.push(p + wobble(&mut own, hand.jitter_px), time_s).unwrap();
+                    time_s += f64::from(length / steps / hand.speed_px_per_s);
+                }
+            }
+            stroke
+        })
+        .collect()
+}
+
+/// A pose in canvas pixels.
+pub(crate) fn on_canvas(pose: &[Vec2], height_px: f32) -> Vec<Vec2> {
+    let scale = height_px / 1.8;
+    pose.iter().map(|p| *p * scale + Vec2::new(400.0, 380.0)).collect()
+}
+
+/// Strokes as a stylus that shakes within `jitter_px` samples them again, for other rates.
+pub(crate) fn sampled_again(stroke: &Stroke, count: usize) -> Stroke {
+    Stroke::new(stroke.resampled(count).into_iter().map(|p: StrokePoint| p)).unwrap()
+}
