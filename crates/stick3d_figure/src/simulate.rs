@@ -5,7 +5,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::figure::Figure;
-use crate::stroke::{Stroke, StrokePoint};
+use crate::stroke::Stroke;
 
 /// How a drawing is cut into strokes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,10 +79,32 @@ pub(crate) fn pose(rng: &mut impl Rng) -> Vec<Vec2> {
             points.extend([elbow, hand, knee, foot]);
         }
         let flat: Vec<Vec2> = points.iter().map(|p| p.truncate()).collect();
-        let drawable =
-            Figure::human().bones.iter().all(|&[a, b]| flat[a].distance(flat[b]) > 0.08);
+        let drawable = Figure::human()
+            .bones
+            .iter()
+            .all(|&[a, b]| flat[a].distance(flat[b]) > 0.08);
         if drawable {
             return flat;
+        }
+    }
+}
+
+/// As [`pose`], but one of those that can be read in one way only: limbs are visibly bent, hands are away from
+/// the neck and feet from the abdomen, nothing is much foreshortened.
+pub(crate) fn clear_pose(rng: &mut impl Rng) -> Vec<Vec2> {
+    let limbs = [(1, 3, 4), (2, 5, 6), (1, 7, 8), (2, 9, 10)];
+    loop {
+        let points = pose(rng);
+        let clear = limbs.iter().all(|&(root, middle, end)| {
+            let (upper, lower) = (points[middle] - points[root], points[end] - points[middle]);
+            let bend_deg = upper.angle_to(lower).abs().to_degrees();
+            (25.0..125.0).contains(&bend_deg)
+                && upper.length() > 0.22
+                && lower.length() > 0.2
+                && points[root].distance(points[end]) > 0.25
+        });
+        if clear {
+            return points;
         }
     }
 }
@@ -91,7 +113,9 @@ pub(crate) fn pose(rng: &mut impl Rng) -> Vec<Vec2> {
 pub(crate) fn cuts(rng: &mut impl Rng, style: Style) -> Vec<(usize, usize)> {
     match style {
         Style::OneLine => vec![(0, 16)],
-        Style::StrokePerBone => [0, 1, 2, 5, 6, 9, 10, 11, 14, 15].map(|k| (k, k + 1)).into(),
+        Style::StrokePerBone => [0, 1, 2, 5, 6, 9, 10, 11, 14, 15]
+            .map(|k| (k, k + 1))
+            .into(),
         Style::StrokePerBoneWithRetraces => (0..16).map(|k| (k, k + 1)).collect(),
         Style::StrokePerLimb => vec![(0, 1), (1, 3), (5, 7), (9, 10), (10, 12), (14, 16)],
         Style::Mix => {
@@ -149,7 +173,9 @@ pub(crate) fn draw(
                 for i in 0..=steps as usize {
                     let t = i as f32 / steps;
                     let p = pair[0].lerp(pair[1], t) + bow * (4.0 * t * (1.0 - t));
-                    stroke.push(p + wobble(&mut own, hand.jitter_px), time_s).unwrap();
+                    stroke
+                        .push(p + wobble(&mut own, hand.jitter_px), time_s)
+                        .unwrap();
                     time_s += f64::from(length / steps / hand.speed_px_per_s);
                 }
             }
@@ -161,10 +187,7 @@ pub(crate) fn draw(
 /// A pose in canvas pixels.
 pub(crate) fn on_canvas(pose: &[Vec2], height_px: f32) -> Vec<Vec2> {
     let scale = height_px / 1.8;
-    pose.iter().map(|p| *p * scale + Vec2::new(400.0, 380.0)).collect()
-}
-
-/// Strokes as a stylus that shakes within `jitter_px` samples them again, for other rates.
-pub(crate) fn sampled_again(stroke: &Stroke, count: usize) -> Stroke {
-    Stroke::new(stroke.resampled(count).into_iter().map(|p: StrokePoint| p)).unwrap()
+    pose.iter()
+        .map(|p| *p * scale + Vec2::new(400.0, 380.0))
+        .collect()
 }

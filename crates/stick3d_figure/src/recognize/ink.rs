@@ -7,10 +7,16 @@ use glam::{DVec2, Vec2};
 use crate::stroke::Stroke;
 
 /// About how many samples a drawing is reduced to: a head of a human drawn in one line still gets six.
-const SAMPLES: usize = 160;
+const SAMPLES: usize = 140;
+/// Nobody draws a figure with more strokes; it bounds the work.
+pub(super) const MAX_STROKES: usize = 256;
 /// Strokes smaller than this part of the drawing's diagonal are slips of the pen.
 const DOT: f32 = 0.005;
-/// How far from straight a bone is drawn, and how near corners are hit, in parts of the diagonal.
+/// A hand does not get steadier on a small drawing: below this diagonal, tolerances shrink no more.
+const SMALL_DRAWING_PX: f32 = 180.0;
+/// Below this, coordinates are metres or the like, not pixels.
+const NOT_PIXELS: f32 = 20.0;
+/// How far from straight a bone is drawn, in parts of the tolerance length.
 const STRAIGHTNESS: f32 = 0.014;
 /// Deviations along a line are alike over about this part of the diagonal.
 const CORRELATION: f32 = 0.03;
@@ -29,16 +35,23 @@ pub(super) struct Ink {
     pub(super) samples: Vec<Vec2>,
     /// Which samples belong to which stroke, in drawing order; none is empty.
     pub(super) strokes: Vec<Range<usize>>,
+    /// Per sample: does a stroke start here?
+    pub(super) starts: Vec<bool>,
     /// The length of the box round the ink.
     pub(super) diagonal: f32,
+    /// The length that tolerances are parts of: the diagonal, except for small drawings.
+    pub(super) tolerance_length: f32,
     /// Length of ink up to each sample, gaps between strokes not counted.
     arc: Vec<f32>,
     moments: Vec<Moments>,
 }
 
 impl Ink {
-    /// None when there is no stroke of any size.
+    /// None when there is no stroke of any size, or more strokes than [`MAX_STROKES`].
     pub(super) fn new(strokes: &[Stroke]) -> Option<Self> {
+        if strokes.len() > MAX_STROKES {
+            return None;
+        }
         let (low, high) = crate::stroke::bounds_px(strokes)?;
         let diagonal = low.distance(high);
         if diagonal.is_nan()
@@ -48,8 +61,8 @@ impl Ink {
         }
         let smooth: Vec<Vec<Vec2>> = strokes
             .iter()
-            .map(|stroke| without_jitter(stroke, diagonal))
-            .filter(|points| extent(points) > DOT * diagonal)
+            .map(|stroke| without_jitter(stroke, 0.008 * tolerance_length(diagonal)))
+            .filter(|points| extent(points) > DOT * tolerance_length(diagonal))
             .collect();
         let total: f32 = smooth.iter().map(|points| length(points)).sum();
         if total <= 0.0 {
@@ -58,7 +71,9 @@ impl Ink {
         let mut ink = Self {
             samples: Vec::with_capacity(SAMPLES * 2),
             strokes: Vec::with_capacity(smooth.len()),
+            starts: Vec::new(),
             diagonal,
+            tolerance_length: tolerance_length(diagonal),
             arc: Vec::new(),
             moments: Vec::new(),
         };
@@ -82,6 +97,7 @@ impl Ink {
                 if i > stroke.start {
                     arc += self.samples[i].distance(self.samples[i - 1]);
                 }
+                self.starts.push(i == stroke.start);
                 self.arc.push(arc);
                 let p = self.samples[i].as_dvec2();
                 moments.sum += p;
@@ -119,19 +135,25 @@ impl Ink {
             xx + yy
         };
         let arc = f64::from(self.arc_between(from, to));
-        let diagonal = f64::from(self.diagonal);
-        let sigma = f64::from(STRAIGHTNESS) * diagonal;
-        let independent = 1.0 + arc / (f64::from(CORRELATION) * diagonal);
+        let unit = f64::from(self.tolerance_length);
+        let sigma = f64::from(STRAIGHTNESS) * unit;
+        let independent = 1.0 + arc / (f64::from(CORRELATION) * unit);
         let bend = independent * squares.max(0.0) / count / (2.0 * sigma * sigma);
-        let excess = (arc - chord_length).max(0.0) / (0.04 * diagonal + 0.12 * chord_length);
+        let excess = (arc - chord_length).max(0.0) / (0.04 * unit + 0.12 * chord_length);
         (bend + excess * excess) as f32
     }
 }
 
-/// The polyline without tremor: points nearer than a hundredth of the diagonal are merged into their mean,
-/// except the two ends.
-fn without_jitter(stroke: &Stroke, diagonal: f32) -> Vec<Vec2> {
-    let radius = diagonal * 0.008;
+fn tolerance_length(diagonal: f32) -> f32 {
+    if diagonal > NOT_PIXELS {
+        diagonal.max(SMALL_DRAWING_PX)
+    } else {
+        diagonal
+    }
+}
+
+/// The polyline without tremor: points within `radius` are merged into their mean, except the two ends.
+fn without_jitter(stroke: &Stroke, radius: f32) -> Vec<Vec2> {
     let mut merged = Vec::new();
     let (mut anchor, mut sum, mut count) = (None, Vec2::ZERO, 0.0_f32);
     for p in stroke.positions() {

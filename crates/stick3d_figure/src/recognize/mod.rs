@@ -15,13 +15,13 @@ use thiserror::Error;
 use crate::figure::Figure;
 use crate::sketch::{Sketch, SketchError};
 use crate::stroke::Stroke;
-use ink::Ink;
+use ink::{Ink, MAX_STROKES};
 use plan::Plan;
-use search::{Reading, Search};
+use search::{Effort, Reading, Search};
 
 /// How much likelier a reading of part of the path must be than the best one of the whole path before finished
 /// strokes are taken for unfinished ones.
-const COMPLETE_BONUS: f32 = 2.0;
+const COMPLETE_BONUS: f32 = 2.5;
 
 /// Why strokes are no drawing of a figure.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -30,6 +30,12 @@ pub enum RecognizeError {
     /// There is no stroke of any size.
     #[error("nothing is drawn: {strokes} strokes, none of which has two different points")]
     Empty {
+        /// How many strokes came.
+        strokes: usize,
+    },
+    /// More strokes than any figure is drawn with.
+    #[error("{strokes} strokes are too many to be one figure; at most {MAX_STROKES} are read")]
+    TooManyStrokes {
         /// How many strokes came.
         strokes: usize,
     },
@@ -79,13 +85,20 @@ pub struct Progress {
 /// # Errors
 /// [`RecognizeError`] when there is too little ink for the path.
 pub fn recognize(figure: &Figure, strokes: &[Stroke]) -> Result<Sketch, RecognizeError> {
-    let empty = || RecognizeError::Empty {
+    if strokes.len() > MAX_STROKES {
+        return Err(RecognizeError::TooManyStrokes {
+            strokes: strokes.len(),
+        });
+    }
+    let ink = Ink::new(strokes).ok_or(RecognizeError::Empty {
         strokes: strokes.len(),
-    };
-    let ink = Ink::new(strokes).ok_or_else(empty)?;
+    })?;
     let plan = Plan::new(figure);
-    let search = Search::run(&plan, &ink);
-    let Some(reading) = search.complete() else {
+    let search = Search::run(&plan, &ink, Effort::USUAL);
+    let found = search
+        .complete()
+        .or_else(|| Search::run(&plan, &ink, Effort::GREAT).complete());
+    let Some(reading) = found else {
         let progress = progress_of(figure, &plan, &ink, search.any());
         let joint = progress.next_joint.unwrap_or(figure.root);
         return Err(RecognizeError::Incomplete {
@@ -102,14 +115,23 @@ pub fn recognize(figure: &Figure, strokes: &[Stroke]) -> Result<Sketch, Recogniz
     )?)
 }
 
-/// How far the strokes so far have come along the path.
+/// How far the strokes so far have come along the path. Fast enough to be asked on every frame while drawing.
+///
+/// What is still to come can change how the strokes so far are read: a straight stroke from the neck may be a whole
+/// arm or its upper half. More strokes than anybody draws count as nothing.
 pub fn progress(figure: &Figure, strokes: &[Stroke], pen: Pen) -> Progress {
     let plan = Plan::new(figure);
     let Some(ink) = Ink::new(strokes) else {
         return progress_of_nothing(figure);
     };
-    let search = Search::run(&plan, &ink);
-    let reading = match pen {
+    let found = reading(&Search::run(&plan, &ink, Effort::USUAL), pen)
+        .or_else(|| reading(&Search::run(&plan, &ink, Effort::GREAT), pen));
+    progress_of(figure, &plan, &ink, found)
+}
+
+/// The likeliest reading of a drawing that may still grow.
+fn reading(search: &Search, pen: Pen) -> Option<Reading> {
+    match pen {
         Pen::Down => search.unfinished(),
         Pen::Up => match (search.complete(), search.any()) {
             (Some(complete), Some(any)) if complete.cost <= any.cost + COMPLETE_BONUS => {
@@ -117,8 +139,7 @@ pub fn progress(figure: &Figure, strokes: &[Stroke], pen: Pen) -> Progress {
             }
             (_, any) => any,
         },
-    };
-    progress_of(figure, &plan, &ink, reading)
+    }
 }
 
 fn progress_of_nothing(figure: &Figure) -> Progress {

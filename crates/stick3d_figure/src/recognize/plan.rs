@@ -9,6 +9,8 @@ pub(super) struct Step {
     pub(super) joint: usize,
     /// The joint it leads to has been visited before: the bone is drawn a second time, or may be skipped.
     pub(super) retrace: bool,
+    /// The two joints of the same bone on the other side of the body.
+    pub(super) mirrored: [usize; 2],
     /// Length of the bone in the template.
     pub(super) template_length: f32,
 }
@@ -23,6 +25,8 @@ pub(super) struct Plan {
     /// Per path point: is it the first visit of a joint in mid-limb (elbow, knee), where one person lifts the pen
     /// and another does not, but each does the same at all of them?
     pub(super) mid_limb: Vec<bool>,
+    /// Per path point: do more than two bones meet there?
+    pub(super) branches: Vec<bool>,
     /// Per path point: the joints that have been visited and will be visited again.
     pub(super) open: Vec<Vec<usize>>,
     pub(super) joint_count: usize,
@@ -38,6 +42,7 @@ impl Plan {
             .map(|k| Step {
                 joint: path[k + 1],
                 retrace: visited(k, path[k + 1]),
+                mirrored: [figure.mirror_of(path[k]), figure.mirror_of(path[k + 1])],
                 template_length: figure.template[path[k]].distance(figure.template[path[k + 1]]),
             })
             .collect();
@@ -45,6 +50,7 @@ impl Plan {
         let mid_limb = (0..path.len())
             .map(|k| k > 0 && !steps[k - 1].retrace && bones_at(path[k]) == 2)
             .collect();
+        let branches = path.iter().map(|joint| bones_at(*joint) > 2).collect();
         let open = (0..path.len())
             .map(|k| {
                 (0..figure.joint_count())
@@ -57,10 +63,16 @@ impl Plan {
             path,
             steps,
             mid_limb,
+            branches,
             open,
             joint_count: figure.joint_count(),
             reach,
         }
+    }
+
+    /// Does the path turn back here, at the end of a limb?
+    pub(super) fn turns_back(&self, k: usize) -> bool {
+        k > 0 && !self.steps[k - 1].retrace && self.steps.get(k).is_some_and(|step| step.retrace)
     }
 
     /// The last path index.

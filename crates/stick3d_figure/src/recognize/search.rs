@@ -6,22 +6,50 @@ use glam::Vec2;
 use super::ink::Ink;
 use super::plan::Plan;
 
-/// Hypotheses kept per sample.
-const BEAM: usize = 24;
-/// Hypotheses this much less likely than the best of their sample are dropped.
-const BEAM_COST: f32 = 20.0;
-/// Pieces of ink bent more than this are no bone.
-const MAX_STRAIGHTNESS_COST: f32 = 25.0;
-/// Two places of one joint within one stroke differ by about this part of the diagonal.
+/// How much is tried.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// Hypotheses kept per sample.
+    beam: usize,
+    /// Hypotheses this much less likely than the best of their sample are dropped.
+    beam_cost: f32,
+    /// Pieces of ink bent more than this are no bone.
+    max_straightness_cost: f32,
+}
+
+impl Effort {
+    /// For drawings as people make them.
+    pub(super) const USUAL: Self = Self {
+        beam: 24,
+        beam_cost: 20.0,
+        max_straightness_cost: 25.0,
+    };
+    /// For crooked ones, where the usual effort finds nothing.
+    pub(super) const GREAT: Self = Self {
+        beam: 40,
+        beam_cost: 150.0,
+        max_straightness_cost: 500.0,
+    };
+}
+
+/// Two places of one joint within one stroke differ by about this part of the tolerance length.
 const RETRACE_SPREAD: f32 = 0.025;
 /// The same where the pen was lifted between: people aim less well.
 const LIFT_SPREAD: f32 = 0.04;
-/// What a corner costs that no lifted pen marks.
-const CORNER_COST: f32 = 1.5;
+/// What a corner costs that no lifted pen marks, in limbs and at their ends.
+const LIMB_CORNER_COST: f32 = 1.5;
+/// The same where limbs branch off: few people draw on from the torso into a leg, or from the head into an arm.
+const BRANCH_CORNER_COST: f32 = 3.0;
 /// What a way back costs that leaves out a joint (hand straight to neck).
 const SHORTCUT_COST: f32 = 3.0;
 /// What a bone costs that was not drawn, only its two ends.
 const UNDRAWN_BONE_COST: f32 = 7.0;
+/// Parameter of the Beta prior over habits: small when people are mostly true to theirs.
+const OPEN_MIND: f32 = 0.25;
+/// Logarithm by which the two sides of the body differ in drawn length.
+const SYMMETRY_SPREAD: f32 = 0.6;
+/// What a limb costs that is folded flat.
+const FOLD_COST: f32 = 5.0;
 /// Samples of one joint nearer than this count as one place when hypotheses are compared.
 const SAME_PLACE_SAMPLES: u16 = 4;
 
@@ -41,6 +69,9 @@ struct Node {
     /// In how many middles of limbs the pen was lifted, and in how many not.
     lifts: u8,
     passes: u8,
+    /// How many limbs were drawn back, and after how many the pen was lifted and the way back skipped.
+    retraced: u8,
+    skipped: u8,
 }
 
 /// A node and what of its past matters for its future: its path index and where its open joints are.
@@ -72,6 +103,7 @@ pub(super) struct Reading {
 pub(super) struct Search<'a> {
     plan: &'a Plan,
     ink: &'a Ink,
+    effort: Effort,
     nodes: Vec<Node>,
     /// Per node and joint: the sample of the latest visit.
     latest: Vec<u16>,
@@ -82,10 +114,11 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn run(plan: &'a Plan, ink: &'a Ink) -> Self {
+    pub(super) fn run(plan: &'a Plan, ink: &'a Ink, effort: Effort) -> Self {
         let mut search = Self {
             plan,
             ink,
+            effort,
             nodes: Vec::new(),
             latest: Vec::new(),
             at_sample: vec![Vec::new(); ink.samples.len()],
@@ -100,6 +133,8 @@ impl<'a> Search<'a> {
             drawn_template: 0.0,
             lifts: 0,
             passes: 0,
+            retraced: 0,
+            skipped: 0,
         };
         search.insert(start, None);
         for stroke in 0..ink.strokes.len() {
@@ -120,7 +155,7 @@ impl<'a> Search<'a> {
             let mut too_bent = 0;
             for to in from + 1..=last {
                 let cost = self.ink.straightness_cost(from, to);
-                if cost > MAX_STRAIGHTNESS_COST {
+                if cost > self.effort.max_straightness_cost {
                     too_bent += 1;
                     if too_bent > 4 {
                         break;
@@ -148,10 +183,14 @@ impl<'a> Search<'a> {
     fn prune(&mut self, sample: usize) {
         let nodes = &self.nodes;
         let alive = &mut self.at_sample[sample];
-        let limit = self.cheapest[sample] + BEAM_COST;
+        let limit = self.cheapest[sample] + self.effort.beam_cost;
         alive.retain(|entry| nodes[entry.id as usize].cost <= limit);
-        alive.sort_by(|a, b| nodes[a.id as usize].cost.total_cmp(&nodes[b.id as usize].cost));
-        alive.truncate(BEAM);
+        alive.sort_by(|a, b| {
+            nodes[a.id as usize]
+                .cost
+                .total_cmp(&nodes[b.id as usize].cost)
+        });
+        alive.truncate(self.effort.beam);
     }
 
     fn latest_of(&self, id: u32) -> &[u16] {
@@ -171,7 +210,7 @@ impl<'a> Search<'a> {
             }
             let chord = self.ink.samples[usize::from(from.sample)].distance(self.ink.samples[to]);
             let mut node = Node {
-                cost: from.cost + straightness_cost + CORNER_COST + shortcut_cost,
+                cost: from.cost + straightness_cost + self.corner_cost(&from) + shortcut_cost,
                 previous: id,
                 path_index: next as u16,
                 sample: to as u16,
@@ -184,8 +223,16 @@ impl<'a> Search<'a> {
             if step.retrace {
                 let before = self.latest_of(id)[step.joint];
                 node.cost += self.distance_cost(before, to, RETRACE_SPREAD);
+                if self.plan.turns_back(k) {
+                    node.cost += habit_cost(from.retraced, from.skipped);
+                    node.retraced = node.retraced.saturating_add(1);
+                }
             } else {
                 node.cost += self.length_cost(&from, chord, step.template_length);
+                node.cost += self.symmetry_cost(id, k, chord);
+                if self.plan.mid_limb[k] {
+                    node.cost += self.fold_cost(&from, to);
+                }
                 node.drawn_length += chord;
                 node.drawn_template += step.template_length;
             }
@@ -229,6 +276,10 @@ impl<'a> Search<'a> {
             } else {
                 let before = self.latest_of(id)[self.plan.path[next]];
                 node.cost += self.distance_cost(before, to, LIFT_SPREAD);
+                if next > k && self.plan.turns_back(k) {
+                    node.cost += habit_cost(from.skipped, from.retraced);
+                    node.skipped = node.skipped.saturating_add(1);
+                }
             }
             self.insert(node, Some(id));
             if new_bone {
@@ -242,7 +293,7 @@ impl<'a> Search<'a> {
         let Some(&before) = self.ink.samples.get(usize::from(before)) else {
             return 0.0;
         };
-        let sigma = spread * self.ink.diagonal;
+        let sigma = spread * self.ink.tolerance_length;
         let squared = before.distance_squared(self.ink.samples[now]) / (sigma * sigma);
         8.0 * (squared / 16.0).ln_1p()
     }
@@ -259,15 +310,63 @@ impl<'a> Search<'a> {
         let spread = match (node.drawn_template > 0.0, ratio > 0.0) {
             // The first bone sets the scale and may be longer than the extent tells.
             (false, true) => 2.0,
-            (_, true) => 0.4,
-            (_, false) => 0.7,
+            (_, true) => 0.35,
+            (_, false) => 0.8,
         };
-        (0.5 * (ratio / spread).powi(2)).min(8.0)
+        // Directions in space that are all alike make a projected length of `r` as frequent as `r^2` (per ln r).
+        let foreshortening = (-ratio).max(0.0);
+        (0.5 * (ratio / spread).powi(2) + foreshortening).min(8.0)
+    }
+
+    /// Going on from a path point without lifting the pen.
+    fn corner_cost(&self, node: &Node) -> f32 {
+        let k = usize::from(node.path_index);
+        match (
+            self.ink.starts[usize::from(node.sample)],
+            self.plan.branches[k],
+        ) {
+            (true, _) => 0.0,
+            (false, true) => BRANCH_CORNER_COST,
+            (false, false) => LIMB_CORNER_COST,
+        }
+    }
+
+    /// A bone beside the same bone of the other side, where that was drawn.
+    fn symmetry_cost(&self, id: u32, k: usize, length: f32) -> f32 {
+        let [from, to] = self.plan.steps[k].mirrored;
+        let latest = self.latest_of(id);
+        let at = |joint: usize| self.ink.samples.get(usize::from(latest[joint]));
+        match (at(from), at(to)) {
+            (Some(from), Some(to))
+                if self.plan.steps[k].joint != self.plan.steps[k].mirrored[1] =>
+            {
+                let other = from.distance(*to).max(1.0e-3 * self.ink.diagonal);
+                (0.5 * ((length / other).ln() / SYMMETRY_SPREAD).powi(2)).min(2.5)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// A new bone that lies on the one before: a way back mistaken for a bone, since limbs do not fold flat.
+    fn fold_cost(&self, node: &Node, to: usize) -> f32 {
+        let mut previous = node;
+        // A lifted pen is a node of its own at the same path point.
+        while previous.path_index == node.path_index {
+            match self.nodes.get(previous.previous as usize) {
+                Some(earlier) => previous = earlier,
+                None => return 0.0,
+            }
+        }
+        let at = |sample: u16| self.ink.samples[usize::from(sample)];
+        let before = at(node.sample) - at(previous.sample);
+        let after = self.ink.samples[to] - at(node.sample);
+        let cosine = before.dot(after) / (before.length() * after.length()).max(f32::MIN_POSITIVE);
+        FOLD_COST * ((-cosine - 0.9) / 0.08).clamp(0.0, 1.0)
     }
 
     /// The dearest node that is still worth a place at `sample`.
     fn limit(&self, sample: usize) -> f32 {
-        self.cheapest[sample] + BEAM_COST
+        self.cheapest[sample] + self.effort.beam_cost
     }
 
     /// Adds a node that follows the one whose latest visits are those of `from`, unless a cheaper one leaves the same
@@ -287,7 +386,9 @@ impl<'a> Search<'a> {
                 } else {
                     before.map_or(UNVISITED, |before| before[joint])
                 };
-                (key ^ u64::from(visit / SAME_PLACE_SAMPLES)).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(23)
+                (key ^ u64::from(visit / SAME_PLACE_SAMPLES))
+                    .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+                    .rotate_left(23)
             })
         };
         self.cheapest[sample] = self.cheapest[sample].min(node.cost);
@@ -311,14 +412,14 @@ impl<'a> Search<'a> {
             self.latest.copy_within(from..from + count, id * count);
         }
         self.latest[id * count + here] = node.sample;
-        if self.at_sample[sample].len() > 4 * BEAM {
+        if self.at_sample[sample].len() > 4 * self.effort.beam {
             self.prune(sample);
         }
     }
 
     /// The best reading that ends at the path's last point.
     pub(super) fn complete(&self) -> Option<Reading> {
-        self.best_at_end(|node| usize::from(node.path_index) == self.plan.end())
+        self.best_at_end(|k| k == self.plan.end())
     }
 
     /// The best reading, wherever on the path it ends.
@@ -326,18 +427,21 @@ impl<'a> Search<'a> {
         self.best_at_end(|_| true)
     }
 
-    fn best_at_end(&self, wanted: impl Fn(&Node) -> bool) -> Option<Reading> {
-        self.at_sample
-            .last()?
-            .iter()
-            .map(|entry| entry.id)
-            .filter(|id| wanted(&self.nodes[*id as usize]))
-            .min_by(|a, b| {
-                self.nodes[*a as usize]
-                    .cost
-                    .total_cmp(&self.nodes[*b as usize].cost)
-            })
-            .map(|id| self.reading(id, self.nodes[id as usize].cost, 0.0))
+    fn best_at_end(&self, wanted: impl Fn(usize) -> bool) -> Option<Reading> {
+        let mut best = None;
+        for &Entry { id, .. } in self.at_sample.last()? {
+            let node = &self.nodes[id as usize];
+            let k = usize::from(node.path_index);
+            if wanted(k) {
+                let lifted = if self.plan.mid_limb[k] {
+                    habit_cost(node.lifts, node.passes)
+                } else {
+                    0.0
+                };
+                consider(&mut best, node.cost + lifted, id, 0.0);
+            }
+        }
+        best.map(|(cost, id, begun)| self.reading(id, cost, begun))
     }
 
     /// The best reading of a drawing whose last bone is still being drawn.
@@ -362,7 +466,7 @@ impl<'a> Search<'a> {
                     let target = self.ink.samples.get(usize::from(target)).copied();
                     let from_px = self.ink.samples[from];
                     let away = overshoot(from_px, target.unwrap_or(from_px), self.ink.samples[end]);
-                    let sigma = RETRACE_SPREAD * self.ink.diagonal;
+                    let sigma = RETRACE_SPREAD * self.ink.tolerance_length;
                     (
                         target.map_or(0.0, |t| t.distance(from_px)),
                         0.5 * (away / sigma).powi(2),
@@ -425,8 +529,10 @@ fn overshoot(start: Vec2, target: Vec2, end: Vec2) -> f32 {
     (start + line * along).distance(end)
 }
 
-/// What it costs to do once more what was done `same` times, and otherwise `other` times (Krichevsky-Trofimov).
+/// What it costs to do once more what was done `same` times, and otherwise `other` times (a Beta prior).
+///
+/// [`OPEN_MIND`] says how soon a habit is taken for one.
 fn habit_cost(same: u8, other: u8) -> f32 {
     let (same, other) = (f32::from(same), f32::from(other));
-    ((same + other + 1.0) / (same + 0.5)).ln()
+    ((same + other + 2.0 * OPEN_MIND) / (same + OPEN_MIND)).ln()
 }
