@@ -4,8 +4,10 @@
 //! path retraces (elbow back to neck) may be drawn or skipped. Corners are not looked for one by one: all path points
 //! are placed together, at the samples where straight pieces between them explain the ink best.
 
+mod cost;
 mod ink;
 mod plan;
+mod reading;
 mod search;
 
 use glam::Vec2;
@@ -17,7 +19,8 @@ use crate::sketch::{Sketch, SketchError};
 use crate::stroke::Stroke;
 use ink::{Ink, MAX_STROKES};
 use plan::Plan;
-use search::{Effort, Reading, Search};
+use reading::Reading;
+use search::{Effort, Search};
 
 /// How much likelier a reading of part of the path must be than the best one of the whole path before finished
 /// strokes are taken for unfinished ones.

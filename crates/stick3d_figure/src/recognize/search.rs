@@ -1,8 +1,7 @@
 //! The search for the samples at which the path's points were drawn: dynamic programming over the samples in
 //! drawing order, with several hypotheses per state, since a joint drawn twice must be drawn at one place.
 
-use glam::Vec2;
-
+use super::cost::{LIFT_SPREAD, RETRACE_SPREAD, SHORTCUT_COST, UNDRAWN_BONE_COST, habit_cost};
 use super::ink::Ink;
 use super::plan::Plan;
 
@@ -32,24 +31,6 @@ impl Effort {
     };
 }
 
-/// Two places of one joint within one stroke differ by about this part of the tolerance length.
-const RETRACE_SPREAD: f32 = 0.025;
-/// The same where the pen was lifted between: people aim less well.
-const LIFT_SPREAD: f32 = 0.04;
-/// What a corner costs that no lifted pen marks, in limbs and at their ends.
-const LIMB_CORNER_COST: f32 = 1.5;
-/// The same where limbs branch off: few people draw on from the torso into a leg, or from the head into an arm.
-const BRANCH_CORNER_COST: f32 = 3.0;
-/// What a way back costs that leaves out a joint (hand straight to neck).
-const SHORTCUT_COST: f32 = 3.0;
-/// What a bone costs that was not drawn, only its two ends.
-const UNDRAWN_BONE_COST: f32 = 7.0;
-/// Parameter of the Beta prior over habits: small when people are mostly true to theirs.
-const OPEN_MIND: f32 = 0.25;
-/// Logarithm by which the two sides of the body differ in drawn length.
-const SYMMETRY_SPREAD: f32 = 0.6;
-/// What a limb costs that is folded flat.
-const FOLD_COST: f32 = 5.0;
 /// Samples of one joint nearer than this count as one place when hypotheses are compared.
 const SAME_PLACE_SAMPLES: u16 = 4;
 
@@ -58,57 +39,39 @@ const NO_NODE: u32 = u32::MAX;
 
 /// Path points placed so far, the last of them at `sample`.
 #[derive(Clone, Copy, Debug)]
-struct Node {
-    cost: f32,
-    previous: u32,
-    path_index: u16,
-    sample: u16,
+pub(super) struct Node {
+    pub(super) cost: f32,
+    pub(super) previous: u32,
+    pub(super) path_index: u16,
+    pub(super) sample: u16,
     /// Length of all bones drawn for the first time, in the drawing and in the template: their ratio is its scale.
-    drawn_length: f32,
-    drawn_template: f32,
+    pub(super) drawn_length: f32,
+    pub(super) drawn_template: f32,
     /// In how many middles of limbs the pen was lifted, and in how many not.
-    lifts: u8,
-    passes: u8,
+    pub(super) lifts: u8,
+    pub(super) passes: u8,
     /// How many limbs were drawn back, and after how many the pen was lifted and the way back skipped.
-    retraced: u8,
-    skipped: u8,
+    pub(super) retraced: u8,
+    pub(super) skipped: u8,
 }
 
 /// A node and what of its past matters for its future: its path index and where its open joints are.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
-    key: u64,
-    id: u32,
-}
-
-/// A path point and the sample it was drawn at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Visit {
-    pub(super) path_index: usize,
-    pub(super) sample: usize,
-}
-
-/// One reading of the ink.
-#[derive(Clone, Debug)]
-pub(super) struct Reading {
-    /// Negative logarithm of its likelihood.
-    pub(super) cost: f32,
-    /// The path points that were drawn, in order. Path points whose bone was skipped are left out.
-    pub(super) visits: Vec<Visit>,
-    /// How much of the next bone is drawn, from 0 to 1, while the pen is down.
-    pub(super) begun: f32,
+pub(super) struct Entry {
+    pub(super) key: u64,
+    pub(super) id: u32,
 }
 
 /// The search over one drawing.
 pub(super) struct Search<'a> {
-    plan: &'a Plan,
-    ink: &'a Ink,
+    pub(super) plan: &'a Plan,
+    pub(super) ink: &'a Ink,
     effort: Effort,
-    nodes: Vec<Node>,
+    pub(super) nodes: Vec<Node>,
     /// Per node and joint: the sample of the latest visit.
     latest: Vec<u16>,
     /// Per sample: nodes whose last path point lies there.
-    at_sample: Vec<Vec<Entry>>,
+    pub(super) at_sample: Vec<Vec<Entry>>,
     /// Per sample: the least cost of them.
     cheapest: Vec<f32>,
 }
@@ -193,7 +156,7 @@ impl<'a> Search<'a> {
         alive.truncate(self.effort.beam);
     }
 
-    fn latest_of(&self, id: u32) -> &[u16] {
+    pub(super) fn latest_of(&self, id: u32) -> &[u16] {
         let count = self.plan.joint_count;
         &self.latest[id as usize * count..][..count]
     }
@@ -288,82 +251,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Two visits of one joint at two places: a Gaussian near, a heavy tail far.
-    fn distance_cost(&self, before: u16, now: usize, spread: f32) -> f32 {
-        let Some(&before) = self.ink.samples.get(usize::from(before)) else {
-            return 0.0;
-        };
-        let sigma = spread * self.ink.tolerance_length;
-        let squared = before.distance_squared(self.ink.samples[now]) / (sigma * sigma);
-        8.0 * (squared / 16.0).ln_1p()
-    }
-
-    /// A bone of this length beside what has been drawn: shorter is foreshortening, longer is a worse drawing.
-    fn length_cost(&self, node: &Node, length: f32, template_length: f32) -> f32 {
-        let least_scale = self.ink.diagonal / self.plan.reach;
-        let scale = if node.drawn_template > 0.0 {
-            (node.drawn_length / node.drawn_template).max(least_scale)
-        } else {
-            least_scale
-        };
-        let ratio = (length / (scale * template_length)).max(1.0e-3).ln();
-        let spread = match (node.drawn_template > 0.0, ratio > 0.0) {
-            // The first bone sets the scale and may be longer than the extent tells.
-            (false, true) => 2.0,
-            (_, true) => 0.35,
-            (_, false) => 0.8,
-        };
-        // Directions in space that are all alike make a projected length of `r` as frequent as `r^2` (per ln r).
-        let foreshortening = (-ratio).max(0.0);
-        (0.5 * (ratio / spread).powi(2) + foreshortening).min(8.0)
-    }
-
-    /// Going on from a path point without lifting the pen.
-    fn corner_cost(&self, node: &Node) -> f32 {
-        let k = usize::from(node.path_index);
-        match (
-            self.ink.starts[usize::from(node.sample)],
-            self.plan.branches[k],
-        ) {
-            (true, _) => 0.0,
-            (false, true) => BRANCH_CORNER_COST,
-            (false, false) => LIMB_CORNER_COST,
-        }
-    }
-
-    /// A bone beside the same bone of the other side, where that was drawn.
-    fn symmetry_cost(&self, id: u32, k: usize, length: f32) -> f32 {
-        let [from, to] = self.plan.steps[k].mirrored;
-        let latest = self.latest_of(id);
-        let at = |joint: usize| self.ink.samples.get(usize::from(latest[joint]));
-        match (at(from), at(to)) {
-            (Some(from), Some(to))
-                if self.plan.steps[k].joint != self.plan.steps[k].mirrored[1] =>
-            {
-                let other = from.distance(*to).max(1.0e-3 * self.ink.diagonal);
-                (0.5 * ((length / other).ln() / SYMMETRY_SPREAD).powi(2)).min(2.5)
-            }
-            _ => 0.0,
-        }
-    }
-
-    /// A new bone that lies on the one before: a way back mistaken for a bone, since limbs do not fold flat.
-    fn fold_cost(&self, node: &Node, to: usize) -> f32 {
-        let mut previous = node;
-        // A lifted pen is a node of its own at the same path point.
-        while previous.path_index == node.path_index {
-            match self.nodes.get(previous.previous as usize) {
-                Some(earlier) => previous = earlier,
-                None => return 0.0,
-            }
-        }
-        let at = |sample: u16| self.ink.samples[usize::from(sample)];
-        let before = at(node.sample) - at(previous.sample);
-        let after = self.ink.samples[to] - at(node.sample);
-        let cosine = before.dot(after) / (before.length() * after.length()).max(f32::MIN_POSITIVE);
-        FOLD_COST * ((-cosine - 0.9) / 0.08).clamp(0.0, 1.0)
-    }
-
     /// The dearest node that is still worth a place at `sample`.
     fn limit(&self, sample: usize) -> f32 {
         self.cheapest[sample] + self.effort.beam_cost
@@ -416,123 +303,4 @@ impl<'a> Search<'a> {
             self.prune(sample);
         }
     }
-
-    /// The best reading that ends at the path's last point.
-    pub(super) fn complete(&self) -> Option<Reading> {
-        self.best_at_end(|k| k == self.plan.end())
-    }
-
-    /// The best reading, wherever on the path it ends.
-    pub(super) fn any(&self) -> Option<Reading> {
-        self.best_at_end(|_| true)
-    }
-
-    fn best_at_end(&self, wanted: impl Fn(usize) -> bool) -> Option<Reading> {
-        let mut best = None;
-        for &Entry { id, .. } in self.at_sample.last()? {
-            let node = &self.nodes[id as usize];
-            let k = usize::from(node.path_index);
-            if wanted(k) {
-                let lifted = if self.plan.mid_limb[k] {
-                    habit_cost(node.lifts, node.passes)
-                } else {
-                    0.0
-                };
-                consider(&mut best, node.cost + lifted, id, 0.0);
-            }
-        }
-        best.map(|(cost, id, begun)| self.reading(id, cost, begun))
-    }
-
-    /// The best reading of a drawing whose last bone is still being drawn.
-    pub(super) fn unfinished(&self) -> Option<Reading> {
-        let stroke = self.ink.strokes.last()?.clone();
-        let end = stroke.end - 1;
-        let mut best: Option<(f32, u32, f32)> = None;
-        for from in stroke {
-            let straight = self.ink.straightness_cost(from, end);
-            for &Entry { id, .. } in &self.at_sample[from] {
-                let node = &self.nodes[id as usize];
-                let k = usize::from(node.path_index);
-                let Some(step) = self.plan.steps.get(k) else {
-                    if from == end {
-                        consider(&mut best, node.cost, id, 0.0);
-                    }
-                    continue;
-                };
-                let chord = self.ink.samples[from].distance(self.ink.samples[end]);
-                let (whole, too_long_cost) = if step.retrace {
-                    let target = self.latest_of(id)[step.joint];
-                    let target = self.ink.samples.get(usize::from(target)).copied();
-                    let from_px = self.ink.samples[from];
-                    let away = overshoot(from_px, target.unwrap_or(from_px), self.ink.samples[end]);
-                    let sigma = RETRACE_SPREAD * self.ink.tolerance_length;
-                    (
-                        target.map_or(0.0, |t| t.distance(from_px)),
-                        0.5 * (away / sigma).powi(2),
-                    )
-                } else {
-                    let scale = if node.drawn_template > 0.0 {
-                        node.drawn_length / node.drawn_template
-                    } else {
-                        self.ink.diagonal / self.plan.reach
-                    };
-                    let whole = scale * step.template_length;
-                    let cost = if chord > whole {
-                        self.length_cost(node, chord, step.template_length)
-                    } else {
-                        0.0
-                    };
-                    (whole, cost)
-                };
-                let begun = if whole > 0.0 {
-                    (chord / whole).min(1.0)
-                } else {
-                    1.0
-                };
-                consider(&mut best, node.cost + straight + too_long_cost, id, begun);
-            }
-        }
-        best.map(|(cost, id, begun)| self.reading(id, cost, begun))
-    }
-
-    fn reading(&self, id: u32, cost: f32, begun: f32) -> Reading {
-        let mut visits = Vec::new();
-        let mut at = id;
-        while let Some(node) = self.nodes.get(at as usize) {
-            visits.push(Visit {
-                path_index: usize::from(node.path_index),
-                sample: usize::from(node.sample),
-            });
-            at = node.previous;
-        }
-        visits.reverse();
-        Reading {
-            cost,
-            visits,
-            begun,
-        }
-    }
-}
-
-fn consider(best: &mut Option<(f32, u32, f32)>, cost: f32, id: u32, begun: f32) {
-    if best.is_none_or(|(cheapest, ..)| cost < cheapest) {
-        *best = Some((cost, id, begun));
-    }
-}
-
-/// How far `end` lies from the line from `start` to `target`, or beyond its end.
-fn overshoot(start: Vec2, target: Vec2, end: Vec2) -> f32 {
-    let line = target - start;
-    let along =
-        ((end - start).dot(line) / line.length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
-    (start + line * along).distance(end)
-}
-
-/// What it costs to do once more what was done `same` times, and otherwise `other` times (a Beta prior).
-///
-/// [`OPEN_MIND`] says how soon a habit is taken for one.
-fn habit_cost(same: u8, other: u8) -> f32 {
-    let (same, other) = (f32::from(same), f32::from(other));
-    ((same + other + 2.0 * OPEN_MIND) / (same + OPEN_MIND)).ln()
 }
