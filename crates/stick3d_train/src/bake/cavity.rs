@@ -20,7 +20,7 @@ pub(super) struct Opened {
     /// Per remaining vertex its number before.
     pub(super) kept: Vec<u32>,
     /// The rims of the holes, renumbered: right eye, left eye, mouth.
-    pub(super) holes: Vec<Vec<u32>>,
+    pub(super) holes: [Vec<u32>; 3],
 }
 
 /// A closed edge loop and the smaller part of the surface on one side of it.
@@ -84,10 +84,7 @@ fn cut(quads: &[[u32; 4]], vertices: usize, chosen: &[&Loop; 3]) -> Opened {
         .iter()
         .filter_map(|[a, b, c, d]| Some([renumber(a)?, renumber(b)?, renumber(c)?, renumber(d)?]))
         .collect();
-    let holes = chosen
-        .iter()
-        .map(|l| l.rim.iter().filter_map(renumber).collect())
-        .collect();
+    let holes = chosen.map(|l| l.rim.iter().filter_map(renumber).collect());
     Opened { quads, kept, holes }
 }
 

@@ -6,6 +6,7 @@
 mod cavity;
 mod dress;
 mod error;
+mod eyes;
 pub mod human;
 mod makehuman;
 mod obj;

@@ -65,11 +65,20 @@ impl Obj {
 
     /// The mean of a group's vertices: for a cube round a joint, where the joint is.
     pub(super) fn group_center(&self, group: &str, at: &[DVec3]) -> Result<DVec3, String> {
+        self.group_ball(group, at).map(|(center, _)| center)
+    }
+
+    /// The mean of a group's vertices and the smallest distance of one from it.
+    pub(super) fn group_ball(&self, group: &str, at: &[DVec3]) -> Result<(DVec3, f64), String> {
         let mut vertices: Vec<u32> = self.quads(group)?.iter().flatten().copied().collect();
         vertices.sort_unstable();
         vertices.dedup();
-        let sum: DVec3 = vertices.iter().map(|&vertex| at[vertex as usize]).sum();
-        Ok(sum / vertices.len().max(1) as f64)
+        let points = || vertices.iter().map(|&vertex| at[vertex as usize]);
+        let center = points().sum::<DVec3>() / vertices.len().max(1) as f64;
+        let radius = points()
+            .map(|point| point.distance(center))
+            .fold(f64::INFINITY, f64::min);
+        Ok((center, radius))
     }
 }
 

@@ -42,9 +42,10 @@ impl Surface {
     pub(super) fn fan_shut(&mut self, rim: &[u32], apex: DVec3) -> u32 {
         let top = self.positions.len() as u32;
         self.positions.push(apex);
-        self.influences.push(mean_influences(
-            rim.iter().map(|&v| &self.influences[v as usize]),
-        ));
+        let lists = rim
+            .iter()
+            .map(|&v| (&self.influences[v as usize], 1.0 / rim.len() as f64));
+        self.influences.push(weighted_sum(lists));
         let used: BTreeSet<(u32, u32)> = self.directed_edges().collect();
         for (index, &a) in rim.iter().enumerate() {
             let b = rim[(index + 1) % rim.len()];
@@ -58,13 +59,14 @@ impl Surface {
         top
     }
 
-    /// Splits the edge `a`-`b` at its middle; returns the new vertex.
-    pub(super) fn split(&mut self, a: u32, b: u32) -> u32 {
+    /// Splits the edge `a`-`b` at the share `t` of the way from `a`; returns the new vertex.
+    pub(super) fn split_at(&mut self, a: u32, b: u32, t: f64) -> u32 {
         let middle = self.positions.len() as u32;
+        let (from, to) = (a as usize, b as usize);
         self.positions
-            .push((self.positions[a as usize] + self.positions[b as usize]) / 2.0);
-        let ends = [a, b].map(|vertex| &self.influences[vertex as usize]);
-        self.influences.push(mean_influences(ends.into_iter()));
+            .push(self.positions[from].lerp(self.positions[to], t));
+        self.influences
+            .push(mix(&self.influences[from], &self.influences[to], t));
         for index in 0..self.triangles.len() {
             let triangle = self.triangles[index];
             let side = (0..3).find(|&side| {
@@ -80,9 +82,10 @@ impl Surface {
         middle
     }
 
-    /// Splits the longest edge, `times` times over.
+    /// Splits the longest edge, `times` times over, the new vertices following the surface's curvature.
     pub(super) fn split_longest(&mut self, times: usize) {
         for _ in 0..times {
+            let normals = self.normals();
             let length = |&(a, b): &(u32, u32)| {
                 self.positions[a as usize].distance_squared(self.positions[b as usize])
             };
@@ -93,9 +96,19 @@ impl Surface {
                     .then_with(|| right.cmp(left))
             });
             if let Some((a, b)) = longest {
-                self.split(a, b);
+                let bulge = self.bulge(a, b, &normals);
+                let middle = self.split_at(a, b, 0.5);
+                self.positions[middle as usize] += bulge;
             }
         }
+    }
+
+    /// How far the middle of a curved edge lies off the straight one: the cubic with the edge's
+    /// projections on both tangent planes as end tangents.
+    fn bulge(&self, a: u32, b: u32, normals: &[DVec3]) -> DVec3 {
+        let straight = self.positions[b as usize] - self.positions[a as usize];
+        let tangent = |vertex: u32| straight.reject_from_normalized(normals[vertex as usize]);
+        (tangent(a) - tangent(b)) / 8.0
     }
 
     /// Per vertex its neighbours, ascending.
@@ -124,6 +137,61 @@ impl Surface {
         }
     }
 
+    /// Blends every vertex' influences `steps` times by `mask` (0 to 1) with the mean of its neighbours'.
+    pub(super) fn smooth_influences(&mut self, mask: &[f64], steps: usize) {
+        let neighbors = self.neighbors();
+        for _ in 0..steps {
+            let before = self.influences.clone();
+            for (vertex, around) in neighbors.iter().enumerate().filter(|(v, _)| mask[*v] > 0.0) {
+                let each = 1.0 / around.len().max(1) as f64;
+                let mean = weighted_sum(around.iter().map(|&v| (&before[v as usize], each)));
+                self.influences[vertex] = mix(&before[vertex], &mean, mask[vertex]);
+            }
+        }
+    }
+
+    /// Moves the vertices on either side of the line `field = 0` along their edges toward it, to a
+    /// distance of `gap`, so that a change of colour there is sharp.
+    ///
+    /// `field` is a signed distance; a vertex moves at most two thirds of an edge.
+    pub(super) fn pinch(&mut self, field: impl Fn(DVec3) -> f64, gap: f64) {
+        let values: Vec<f64> = self.positions.iter().map(|&point| field(point)).collect();
+        let steepness = |a: usize, b: usize| {
+            (values[a] - values[b]).abs() / self.positions[a].distance(self.positions[b]).max(1e-9)
+        };
+        let mut moves = Vec::new();
+        for (a, around) in self.neighbors().iter().enumerate() {
+            let across = around
+                .iter()
+                .map(|&b| b as usize)
+                .filter(|&b| values[a] * values[b] < 0.0);
+            let steepest =
+                across.max_by(|&b, &c| steepness(a, b).total_cmp(&steepness(a, c)).then(c.cmp(&b)));
+            if let Some(b) = steepest.filter(|_| values[a].abs() > gap) {
+                let t = (values[a].abs() - gap) / (values[a] - values[b]).abs();
+                moves.push((a, b, t.min(0.67)));
+            }
+        }
+        let (positions, influences) = (self.positions.clone(), self.influences.clone());
+        for (a, b, t) in moves {
+            self.positions[a] = positions[a].lerp(positions[b], t);
+            self.influences[a] = mix(&influences[a], &influences[b], t);
+        }
+    }
+
+    /// Per vertex its outward unit normal.
+    pub(super) fn normals(&self) -> Vec<DVec3> {
+        let mut normals = vec![DVec3::ZERO; self.positions.len()];
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.map(|corner| self.positions[corner as usize]);
+            let area = (b - a).cross(c - a);
+            for &corner in triangle {
+                normals[corner as usize] += area;
+            }
+        }
+        normals.into_iter().map(DVec3::normalize_or_zero).collect()
+    }
+
     fn directed_edges(&self) -> impl Iterator<Item = (u32, u32)> {
         self.triangles
             .iter()
@@ -131,19 +199,21 @@ impl Surface {
     }
 }
 
-/// The mean of some influence lists, bones ascending.
-pub(super) fn mean_influences<'a>(
-    lists: impl Iterator<Item = &'a Vec<(u16, f64)>>,
-) -> Vec<(u16, f64)> {
+/// The influences at the share `t` of the way from one list to another.
+pub(super) fn mix(from: &[(u16, f64)], to: &[(u16, f64)], t: f64) -> Vec<(u16, f64)> {
+    weighted_sum([(from, 1.0 - t), (to, t)].into_iter())
+}
+
+/// The sum of some influence lists, each times a factor, bones ascending.
+fn weighted_sum<'a, List>(lists: impl Iterator<Item = (List, f64)>) -> Vec<(u16, f64)>
+where
+    List: IntoIterator<Item = &'a (u16, f64)>,
+{
     let mut sums: BTreeMap<u16, f64> = BTreeMap::new();
-    let mut count = 0.0;
-    for list in lists {
-        count += 1.0;
+    for (list, factor) in lists {
         for &(bone, weight) in list {
-            *sums.entry(bone).or_default() += weight;
+            *sums.entry(bone).or_default() += weight * factor;
         }
     }
-    sums.into_iter()
-        .map(|(bone, sum)| (bone, sum / count))
-        .collect()
+    sums.into_iter().collect()
 }
