@@ -75,8 +75,11 @@ pub enum Pen {
 pub struct Progress {
     /// Per joint: where it was drawn, canvas pixels, y up; none where it was not yet.
     pub placed: Vec<Option<Vec2>>,
-    /// The joint to which the next bone (or the one being drawn) leads; none when complete.
+    /// The joint to which the bone leads that is being drawn, or comes next; none when complete. With the pen up ways
+    /// back count as skipped, so that it is a joint not placed yet.
     pub next_joint: Option<usize>,
+    /// The joint from which that bone starts.
+    pub from_joint: Option<usize>,
     /// The part of the path that is drawn, from 0 to 1, by the length of its bones in the template.
     pub fraction: f32,
     /// All joints are placed and the path is at its end.
@@ -102,7 +105,7 @@ pub fn recognize(figure: &Figure, strokes: &[Stroke]) -> Result<Sketch, Recogniz
         .complete()
         .or_else(|| Search::run(&plan, &ink, Effort::GREAT).complete());
     let Some(reading) = found else {
-        let progress = progress_of(figure, &plan, &ink, search.any());
+        let progress = progress_of(figure, &plan, &ink, search.any(), Pen::Up);
         let joint = progress.next_joint.unwrap_or(figure.root);
         return Err(RecognizeError::Incomplete {
             figure: figure.name.clone(),
@@ -129,7 +132,7 @@ pub fn progress(figure: &Figure, strokes: &[Stroke], pen: Pen) -> Progress {
     };
     let found = reading(&Search::run(&plan, &ink, Effort::USUAL), pen)
         .or_else(|| reading(&Search::run(&plan, &ink, Effort::GREAT), pen));
-    progress_of(figure, &plan, &ink, found)
+    progress_of(figure, &plan, &ink, found, pen)
 }
 
 /// The likeliest reading of a drawing that may still grow.
@@ -149,12 +152,19 @@ fn progress_of_nothing(figure: &Figure) -> Progress {
     Progress {
         placed: vec![None; figure.joint_count()],
         next_joint: figure.path.first().copied(),
+        from_joint: None,
         fraction: 0.0,
         complete: false,
     }
 }
 
-fn progress_of(figure: &Figure, plan: &Plan, ink: &Ink, reading: Option<Reading>) -> Progress {
+fn progress_of(
+    figure: &Figure,
+    plan: &Plan,
+    ink: &Ink,
+    reading: Option<Reading>,
+    pen: Pen,
+) -> Progress {
     let Some(reading) = reading else {
         return progress_of_nothing(figure);
     };
@@ -169,9 +179,16 @@ fn progress_of(figure: &Figure, plan: &Plan, ink: &Ink, reading: Option<Reading>
         .steps
         .get(reached)
         .map_or(0.0, |step| step.template_length * reading.begun);
+    let next = match pen {
+        Pen::Down => reached,
+        Pen::Up => (reached..plan.end())
+            .find(|&k| !plan.steps[k].retrace)
+            .unwrap_or(plan.end()),
+    };
     Progress {
         placed: placed_joints(plan, ink, &reading),
-        next_joint: plan.steps.get(reached).map(|step| step.joint),
+        next_joint: plan.steps.get(next).map(|step| step.joint),
+        from_joint: plan.steps.get(next).map(|_| plan.path[next]),
         fraction: ((length(reached) + begun) / length(plan.end())).clamp(0.0, 1.0),
         complete: reached == plan.end(),
     }

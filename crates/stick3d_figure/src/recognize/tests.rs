@@ -181,8 +181,11 @@ fn progress_follows_the_strokes() {
                 } else {
                     count += 1;
                     false_complete += u32::from(up.complete);
-                    let next = human.path[cuts[n - 1].1 + 1];
-                    next_right += u32::from(up.next_joint == Some(next));
+                    let end = cuts[n - 1].1;
+                    let next = human.path[end + 1..]
+                        .iter()
+                        .find(|j| !human.path[..=end].contains(j));
+                    next_right += u32::from(up.next_joint == next.copied());
                 }
                 // The same stroke when two thirds of it were drawn.
                 let (from, to) = cuts[n - 1];
