@@ -2,10 +2,26 @@
 //!
 //! All loops multiply and add separately and in a fixed order, so a result does not depend on the instruction set.
 
-use pulp::Arch;
+use macerator::{AutoArch, Simd, WithSimd};
 
 /// How many outputs are worked on at a time, so that they stay in the nearest cache while the rows stream by.
 const TILE: usize = 2048;
+
+/// Runs a loop compiled for the best instruction set that this processor has. The closure must be `#[inline(always)]`,
+/// or it is compiled for the least one.
+#[inline(always)]
+pub(crate) fn vectorised(run: impl FnOnce()) {
+    struct Loop<F>(F);
+    impl<F: FnOnce()> WithSimd for Loop<F> {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self) {
+            self.0();
+        }
+    }
+    AutoArch::new().dispatch(Loop(run));
+}
 
 /// `output[j] += Σ_i input[i] · rows[i][j]`; rows of zero inputs (half of them after a ReLU) are not read.
 ///
@@ -13,10 +29,10 @@ const TILE: usize = 2048;
 /// - `input`: `[I]`
 /// - `rows`: `[I][J]`, contiguous
 /// - `output`: `[J]`
-pub(crate) fn accumulate(arch: Arch, input: &[f32], rows: &[f32], output: &mut [f32]) {
+pub(crate) fn accumulate(input: &[f32], rows: &[f32], output: &mut [f32]) {
     let row_len = output.len();
     debug_assert_eq!(rows.len(), input.len() * row_len);
-    arch.dispatch(
+    vectorised(
         #[inline(always)]
         || {
             for (tile, out) in output.chunks_mut(TILE).enumerate() {
@@ -86,12 +102,12 @@ mod tests {
         let rows: Vec<f32> = (0..rows_count * row_len).map(|i| ((i * 31 % 101) as f32 - 50.0) / 64.0).collect();
         let input: Vec<f32> = (0..rows_count).map(|i| if i % 3 == 1 { 0.0 } else { i as f32 / 4.0 - 1.0 }).collect();
         let mut output = vec![0.5; row_len];
-        accumulate(Arch::new(), &input, &rows, &mut output);
+        accumulate(&input, &rows, &mut output);
         for (j, out) in output.iter().enumerate() {
             let expected: f32 = 0.5 + (0..rows_count).map(|i| input[i] * rows[i * row_len + j]).sum::<f32>();
             assert!((out - expected).abs() < 1e-5, "{j}: {out} {expected}");
         }
-        accumulate(Arch::new(), &input, &[], &mut []);
+        accumulate(&input, &[], &mut []);
     }
 
     #[test]

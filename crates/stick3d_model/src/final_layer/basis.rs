@@ -1,7 +1,6 @@
 //! The final layer of a figure without a rig: a fixed basis shared by x, y and z.
 
 use glam::Vec3;
-use pulp::Arch;
 
 use super::{FinalLayerError, FinalScratch, expect_len};
 use crate::kernels;
@@ -67,14 +66,13 @@ impl BasisLayer {
 
     pub(super) fn evaluate(
         &self,
-        arch: Arch,
         coefficients: &[f32],
         scratch: &mut FinalScratch,
         positions: &mut [[f32; 3]],
     ) {
         for (axis, coefficients) in coefficients.chunks_exact(self.rank()).enumerate() {
             scratch.axis.fill(0.0);
-            kernels::accumulate(arch, coefficients, &self.columns, &mut scratch.axis);
+            kernels::accumulate(coefficients, &self.columns, &mut scratch.axis);
             for (position, value) in positions.iter_mut().zip(&scratch.axis) {
                 position[axis] = *value;
             }

@@ -1,7 +1,5 @@
 //! The paper's final layer: fully connected, tanh, all 3N coordinates (section 4.2).
 
-use pulp::Arch;
-
 use super::{FinalLayerError, FinalScratch, expect_len};
 use crate::kernels;
 use crate::weights::LinearWeights;
@@ -49,16 +47,15 @@ impl DenseLayer {
 
     pub(super) fn evaluate(
         &self,
-        arch: Arch,
         coefficients: &[f32],
         scratch: &mut FinalScratch,
         positions: &mut [[f32; 3]],
     ) {
         let sums = scratch.axis.as_mut_slice();
         sums.copy_from_slice(&self.linear.bias);
-        kernels::accumulate(arch, coefficients, &self.linear.weight, sums);
+        kernels::accumulate(coefficients, &self.linear.weight, sums);
         let extent = self.extent_m;
-        arch.dispatch(
+        kernels::vectorised(
             #[inline(always)]
             || {
                 for (out, sum) in positions.as_flattened_mut().iter_mut().zip(sums.iter()) {

@@ -9,7 +9,6 @@ pub use dense::DenseLayer;
 pub use skinned::{SkinnedLayer, SkinnedParts};
 
 use glam::Vec3;
-use pulp::Arch;
 
 /// What turns the head's output into vertex positions (metres, centred on the figure's root joint).
 #[derive(Debug, Clone, PartialEq)]
@@ -92,11 +91,10 @@ impl FinalLayer {
     pub fn evaluate(&self, coefficients: &[f32], scratch: &mut FinalScratch, positions: &mut [[f32; 3]]) {
         assert_eq!(coefficients.len(), self.coefficient_len(), "one number per coefficient");
         assert_eq!(positions.len(), self.vertex_count(), "one position per vertex");
-        let arch = Arch::new();
         match self {
-            Self::Dense(layer) => layer.evaluate(arch, coefficients, scratch, positions),
-            Self::Basis(layer) => layer.evaluate(arch, coefficients, scratch, positions),
-            Self::Skinned(layer) => layer.evaluate(arch, coefficients, scratch, positions),
+            Self::Dense(layer) => layer.evaluate(coefficients, scratch, positions),
+            Self::Basis(layer) => layer.evaluate(coefficients, scratch, positions),
+            Self::Skinned(layer) => layer.evaluate(coefficients, scratch, positions),
         }
     }
 

@@ -6,7 +6,6 @@
 //! coefficients that the networks speak to those 3×4s.
 
 use glam::Vec3;
-use pulp::Arch;
 
 use super::{FinalLayerError, FinalScratch, expect_len};
 use crate::kernels;
@@ -149,14 +148,13 @@ impl SkinnedLayer {
 
     pub(super) fn evaluate(
         &self,
-        arch: Arch,
         coefficients: &[f32],
         scratch: &mut FinalScratch,
         positions: &mut [[f32; 3]],
     ) {
         for (axis, coefficients) in coefficients.chunks_exact(self.rank).enumerate() {
             scratch.axis.fill(0.0);
-            kernels::accumulate(arch, coefficients, &self.parts.expansion, &mut scratch.axis);
+            kernels::accumulate(coefficients, &self.parts.expansion, &mut scratch.axis);
             for (bone, entries) in scratch.bones.iter_mut().zip(scratch.axis.chunks_exact(4)) {
                 for (column, entry) in entries.iter().enumerate() {
                     bone[4 * column + axis] = *entry;
@@ -165,7 +163,7 @@ impl SkinnedLayer {
         }
         let SkinnedParts { rest, offsets, bones, weights, .. } = &self.parts;
         let matrices = scratch.bones.as_slice();
-        arch.dispatch(
+        kernels::vectorised(
             #[inline(always)]
             || {
                 let mut begin = 0;

@@ -1,7 +1,6 @@
 //! Running a model at frame rate: sketch to latent, latent to mesh, on plain arrays.
 
 use glam::Vec3;
-use pulp::Arch;
 use stick3d_figure::figure::Figure;
 use stick3d_figure::mesh::NormalAdjacency;
 use stick3d_figure::sketch::{Sketch, SketchError};
@@ -52,7 +51,6 @@ pub struct Inference {
     joints: JointMap,
     latent_len: usize,
     input: Vec<f32>,
-    arch: Arch,
 }
 
 /// A perceptron with the memory for its layers.
@@ -92,7 +90,6 @@ impl Inference {
             adjacency,
             latent_len: model.latent_len(),
             input: vec![0.0; model.figure().input_len()],
-            arch: Arch::new(),
         })
     }
 
@@ -124,7 +121,7 @@ impl Inference {
     pub fn encode(&mut self, sketch: &Sketch, latent: &mut [f32]) -> Result<(), InferError> {
         require("the latent", latent.len(), self.latent_len)?;
         sketch.write_input_vector(&self.figure, &mut self.input)?;
-        let output = self.encoder2d.run(self.arch, &self.input);
+        let output = self.encoder2d.run(&self.input);
         require_finite("sketch's latent", output)?;
         latent.copy_from_slice(output);
         Ok(())
@@ -157,7 +154,7 @@ impl Inference {
     /// [`InferError::Length`], [`InferError::NotFinite`].
     pub fn decode_positions(&mut self, latent: &[f32], positions: &mut [[f32; 3]]) -> Result<(), InferError> {
         require("the positions", positions.len(), self.vertex_count())?;
-        let coefficients = coefficients(&mut self.head, self.arch, self.latent_len, latent)?;
+        let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
         self.final_layer.evaluate(coefficients, &mut self.final_scratch, positions);
         Ok(())
     }
@@ -173,7 +170,7 @@ impl Inference {
     /// [`InferError::Length`], [`InferError::NotFinite`].
     pub fn joints(&mut self, latent: &[f32], joints: &mut [Vec3]) -> Result<(), InferError> {
         require("the joints", joints.len(), self.figure.joint_count())?;
-        let coefficients = coefficients(&mut self.head, self.arch, self.latent_len, latent)?;
+        let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
         match &mut self.joints {
             JointMap::Linear { rows, rank } => {
                 for (joint, row) in joints.iter_mut().zip(rows.chunks_exact(*rank)) {
@@ -194,13 +191,12 @@ impl Inference {
 
 fn coefficients<'a>(
     head: &'a mut Perceptron,
-    arch: Arch,
     latent_len: usize,
     latent: &[f32],
 ) -> Result<&'a [f32], InferError> {
     require("the latent", latent.len(), latent_len)?;
     require_finite("latent", latent)?;
-    let output = head.run(arch, latent);
+    let output = head.run(latent);
     require_finite("latent's mesh", output)?;
     Ok(output)
 }
@@ -212,13 +208,13 @@ impl Perceptron {
     }
 
     /// The output for `input`; empty when there is no layer.
-    fn run(&mut self, arch: Arch, input: &[f32]) -> &[f32] {
+    fn run(&mut self, input: &[f32]) -> &[f32] {
         for (index, layer) in self.weights.layers.iter().enumerate() {
             let (before, after) = self.values.split_at_mut(index);
             let value = before.last().map_or(input, Vec::as_slice);
             let output = after[0].as_mut_slice();
             output.copy_from_slice(&layer.bias);
-            kernels::accumulate(arch, value, &layer.weight, output);
+            kernels::accumulate(value, &layer.weight, output);
             if self.weights.has_relu_after(index) {
                 output.iter_mut().for_each(|x| *x = x.max(0.0));
             }

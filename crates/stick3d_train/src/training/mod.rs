@@ -1,1 +1,30 @@
-//! The three training stages of the paper (section 4.3).
+//! The three training stages of the paper (section 4.3), and the model file that comes out.
+//!
+//! 1. *VAE*: Encoder3D and Decoder, reconstruction plus Kullback-Leibler divergence.
+//! 2. *Encoder2D* alone: it learns the mean that the frozen Encoder3D gives (equation 2), and beyond the paper, what
+//!    the frozen Decoder makes of its guess.
+//! 3. *Joint*: all three together.
+//!
+//! [`train`] runs them. It can be stopped at any time and resumed from the checkpoint in its run folder: all random
+//! numbers depend on the seed and the step alone, so the result is the same to the last bit.
+
+mod adam;
+mod checkpoint;
+mod config;
+mod error;
+mod export;
+mod init;
+mod log;
+mod losses;
+mod networks;
+mod progress;
+mod run;
+
+pub use config::{LossWeights, StageConfig, TrainConfig};
+pub use error::TrainError;
+pub use log::{LossLog, LossRecord};
+pub use progress::{Progress, Quiet, StageName};
+pub use run::{TrainInput, Trained, train};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,153 @@
+//! Crooked and disproportionate drawings: what hands do to a sketch.
+
+use glam::Vec2;
+use rand::Rng;
+use serde::{Deserialize, Serialize};
+use stick3d_figure::figure::Figure;
+
+use super::normal_pair;
+
+/// How the sketches of training differ from true projections.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Augmentation {
+    /// Share of the sketches that stay true.
+    pub clean_share: f32,
+    /// The most that joints of the others are jittered: the standard deviation is drawn between 0 and this, metres.
+    pub jitter_m: f32,
+    /// The most that their bones are scaled: the range is drawn between 0 and this.
+    pub bone_scale: f32,
+}
+
+/// One kind of disturbance of a sketch.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SketchNoise {
+    /// Standard deviation by which every coordinate of every joint is moved, metres (normal distribution).
+    pub jitter_m: f32,
+    /// Every bone's length is multiplied by its own factor, uniform in 1 ± this.
+    pub bone_scale: f32,
+}
+
+impl SketchNoise {
+    /// No disturbance.
+    pub const CLEAN: Self = Self { jitter_m: 0.0, bone_scale: 0.0 };
+
+    /// Disturbs the joints of a sketch (metres, one point per joint): bones first, then jitter.
+    pub fn apply(&self, figure: &Figure, joints: &mut [Vec2], rng: &mut impl Rng) {
+        if self.bone_scale > 0.0 {
+            scale_bones(figure, joints, |rng: &mut dyn rand::RngCore| {
+                1.0 + self.bone_scale * (2.0 * rng.random::<f32>() - 1.0)
+            }, rng);
+        }
+        if self.jitter_m > 0.0 {
+            for joint in joints {
+                *joint += self.jitter_m * Vec2::from_array(normal_pair(rng));
+            }
+        }
+    }
+}
+
+impl Augmentation {
+    /// Draws the disturbance of one sketch.
+    pub fn sample(&self, rng: &mut impl Rng) -> SketchNoise {
+        if rng.random::<f32>() < self.clean_share {
+            return SketchNoise::CLEAN;
+        }
+        SketchNoise {
+            jitter_m: self.jitter_m * rng.random::<f32>(),
+            bone_scale: self.bone_scale * rng.random::<f32>(),
+        }
+    }
+}
+
+/// Scales every bone by its own factor, from the root outward, so that what hangs on a bone moves with it.
+fn scale_bones<R: Rng>(
+    figure: &Figure,
+    joints: &mut [Vec2],
+    mut factor: impl FnMut(&mut dyn rand::RngCore) -> f32,
+    rng: &mut R,
+) {
+    let before = SmallPoints::copy(joints);
+    let mut placed = [false; MAX_JOINTS];
+    placed[figure.root] = true;
+    // The bones are a tree over all joints, so every round places at least one joint more.
+    for _ in 0..figure.bones.len() {
+        for &[a, b] in &figure.bones {
+            let (from, to) = match (placed[a], placed[b]) {
+                (true, false) => (a, b),
+                (false, true) => (b, a),
+                _ => continue,
+            };
+            joints[to] = joints[from] + factor(rng) * (before.0[to] - before.0[from]);
+            placed[to] = true;
+        }
+    }
+}
+
+/// The most joints a figure may have to be augmented without allocating.
+const MAX_JOINTS: usize = 64;
+
+struct SmallPoints([Vec2; MAX_JOINTS]);
+
+impl SmallPoints {
+    fn copy(points: &[Vec2]) -> Self {
+        let mut copy = [Vec2::ZERO; MAX_JOINTS];
+        copy[..points.len()].copy_from_slice(points);
+        Self(copy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::random;
+
+    fn lengths(figure: &Figure, joints: &[Vec2]) -> Vec<f32> {
+        figure.bones.iter().map(|&[a, b]| joints[a].distance(joints[b])).collect()
+    }
+
+    #[test]
+    fn clean_sketches_stay() {
+        let figure = Figure::human();
+        let mut joints = figure.template.clone();
+        SketchNoise::CLEAN.apply(figure, &mut joints, &mut random(1, "test", 0));
+        assert_eq!(joints, figure.template);
+    }
+
+    #[test]
+    fn scaled_bones_keep_their_directions() {
+        let figure = Figure::human();
+        let noise = SketchNoise { jitter_m: 0.0, bone_scale: 0.15 };
+        let mut rng = random(2, "test", 0);
+        let before = lengths(figure, &figure.template);
+        let mut seen: (f32, f32) = (1.0, 1.0);
+        for _ in 0..200 {
+            let mut joints = figure.template.clone();
+            noise.apply(figure, &mut joints, &mut rng);
+            assert_eq!(joints[figure.root], figure.template[figure.root]);
+            for (bone, (&[a, b], before)) in figure.bones.iter().zip(&before).enumerate() {
+                let factor = joints[a].distance(joints[b]) / before;
+                assert!((0.849..=1.151).contains(&factor), "bone {bone}: {factor}");
+                seen = (seen.0.min(factor), seen.1.max(factor));
+                let turned = (joints[b] - joints[a]).angle_to(figure.template[b] - figure.template[a]);
+                assert!(turned.abs() < 1e-4);
+            }
+        }
+        assert!(seen.0 < 0.87 && seen.1 > 1.13, "{seen:?}");
+    }
+
+    #[test]
+    fn jitter_has_the_given_spread() {
+        let figure = Figure::human();
+        let noise = SketchNoise { jitter_m: 0.025, bone_scale: 0.0 };
+        let mut rng = random(3, "test", 0);
+        let mut squares = 0.0;
+        let rounds = 2000;
+        for _ in 0..rounds {
+            let mut joints = figure.template.clone();
+            noise.apply(figure, &mut joints, &mut rng);
+            squares += joints.iter().zip(&figure.template).map(|(a, b)| a.distance_squared(*b)).sum::<f32>();
+        }
+        let spread = (squares / (2 * rounds * figure.joint_count()) as f32).sqrt();
+        assert!((spread - 0.025).abs() < 0.001, "{spread}");
+    }
+}

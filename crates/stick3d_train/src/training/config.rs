@@ -1,0 +1,114 @@
+//! What a training run is made of.
+
+use serde::{Deserialize, Serialize};
+use stick3d_model::Architecture;
+use stick3d_model::architecture::LATENT_LEN;
+
+use super::StageName;
+use crate::dataset::{Augmentation, BasisConfig, Rotations};
+
+/// Everything that decides what a run yields, beside the rig and the poses.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TrainConfig {
+    /// What all random numbers depend on.
+    pub seed: u64,
+    /// The networks; [`Architecture::Basis`] with the rank of `basis`.
+    pub architecture: Architecture,
+    /// Length of the latent.
+    pub latent_len: usize,
+    /// The basis of the meshes.
+    pub basis: BasisConfig,
+    /// Bodies drawn from the pose streams.
+    pub sampled_bodies: usize,
+    /// How often every library pose (and its mirror image) is in the set.
+    pub library_repeats: usize,
+    /// How bodies are turned.
+    pub rotations: Rotations,
+    /// How sketches are disturbed.
+    pub augmentation: Augmentation,
+    /// Bodies in a batch.
+    pub batch_size: usize,
+    /// The three stages in order.
+    pub stages: [StageConfig; 3],
+    /// How the terms of the losses are weighed.
+    pub loss: LossWeights,
+    /// Epochs between two checkpoints.
+    pub checkpoint_every: usize,
+}
+
+/// One stage of training.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StageConfig {
+    /// Passes over all bodies.
+    pub epochs: usize,
+    /// Adam's step at the start of the stage; it falls along a half cosine to a hundredth.
+    pub learning_rate: f64,
+}
+
+/// How the terms of the losses are weighed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LossWeights {
+    /// Paper's alpha: weight of the mean squared error over all coordinates in normalised units, against the
+    /// Kullback-Leibler divergence (section 4.3: 1e5).
+    pub alpha: f64,
+    /// Weight of the whole autoencoder loss in the joint stage.
+    pub autoencoder: f64,
+    /// Weight of equation 2: squared error between the two encoders, mean over the latent.
+    pub latent: f64,
+    /// Weight of the mean distance between the vertices of the decoded sketch and of the body, centimetres.
+    pub vertices: f64,
+    /// Weight of the mean distance between their joints, centimetres.
+    pub joints: f64,
+    /// Weight of the mean distance between their joints on the sketch plane, centimetres.
+    pub reprojection: f64,
+    /// Weight of the mean error of the bones' lengths, per cent.
+    pub bones: f64,
+    /// How many vertices stand for all of them in the vertex distance.
+    pub probes: usize,
+}
+
+impl TrainConfig {
+    /// The recipe of the shipped human.
+    #[must_use]
+    pub fn human() -> Self {
+        let basis = BasisConfig { rank: 96, helpers: 48, poses: 4000 };
+        Self {
+            seed: 1,
+            architecture: Architecture::Basis {
+                rank: basis.rank,
+                encoder3d: vec![512, 512],
+                head: vec![512, 512],
+                encoder2d: vec![1024, 1024],
+            },
+            latent_len: LATENT_LEN,
+            basis,
+            sampled_bodies: 40_000,
+            library_repeats: 10,
+            rotations: Rotations::SHIPPED,
+            augmentation: Augmentation { clean_share: 0.5, jitter_m: 0.04, bone_scale: 0.2 },
+            batch_size: 256,
+            stages: [
+                StageConfig { epochs: 10, learning_rate: 1e-3 },
+                StageConfig { epochs: 20, learning_rate: 1e-3 },
+                StageConfig { epochs: 30, learning_rate: 1e-3 },
+            ],
+            loss: LossWeights {
+                alpha: 1e5,
+                autoencoder: 0.02,
+                latent: 1.0,
+                vertices: 1.0,
+                joints: 0.5,
+                reprojection: 0.5,
+                bones: 0.2,
+                probes: 300,
+            },
+            checkpoint_every: 5,
+        }
+    }
+
+    /// The stages with their names.
+    pub(crate) fn named_stages(&self) -> [(StageName, StageConfig); 3] {
+        let [a, b, c] = self.stages;
+        [(StageName::Autoencoder, a), (StageName::Encoder2d, b), (StageName::Joint, c)]
+    }
+}

@@ -1,0 +1,82 @@
+//! From trained networks to a model.
+
+use stick3d_model::metadata::{FORMAT_VERSION, Metadata, Normalisation, TOOL_VERSION, topology_hash};
+use stick3d_model::weights::LinearWeights;
+use stick3d_model::{Model, ModelParts};
+
+use super::losses::CodeScale;
+use super::networks::NetworkWeights;
+use super::run::{Run, TrainInput};
+use super::{TrainConfig, TrainError};
+
+/// SHA-256 of a text, in hexadecimal digits.
+pub(super) fn hash_text(text: &str) -> String {
+    use sha2::Digest as _;
+    sha2::Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The model: normalisation folded into the networks, weights rounded as the file stores them.
+pub(super) fn model(
+    input: &TrainInput<'_>,
+    config: &TrainConfig,
+    run: &Run<'_>,
+    weights: NetworkWeights,
+) -> Result<Model, TrainError> {
+    let NetworkWeights { mut encoder3d, mut head, mut encoder2d } = weights;
+    if let Some(last) = head.layers.last_mut() {
+        fold_into_output(last, &run.scale);
+    }
+    if let Some(first) = encoder3d.trunk.layers.first_mut() {
+        fold_into_input(first, &run.scale);
+    }
+    encoder3d.round_to_half();
+    head.round_to_half();
+    encoder2d.round_to_half();
+    let rig = input.rig;
+    let vertex_count = rig.mesh.positions.len();
+    let metadata = Metadata {
+        format_version: FORMAT_VERSION,
+        tool_version: TOOL_VERSION.to_owned(),
+        figure: input.figure.clone(),
+        architecture: config.architecture.clone(),
+        latent_len: config.latent_len,
+        vertex_count,
+        topology_hash: topology_hash(vertex_count, &rig.mesh.triangles),
+        normalisation: Normalisation {
+            input: "offsets along the sketch path, divided by their root mean square length".to_owned(),
+            extent_m: run.extent_m,
+            centre_joint: input.figure.joints[input.figure.root].name.clone(),
+        },
+        recipe: serde_json::to_value(config).map_err(|e| TrainError::Config(e.to_string()))?,
+        data_hash: run.data_hash.clone(),
+        metrics: serde_json::json!({ "basis_fit": run.basis_fit }),
+        held_out_poses: input.held_out_poses.clone(),
+    };
+    Ok(Model::new(ModelParts {
+        metadata,
+        triangles: rig.mesh.triangles.clone(),
+        colors: rig.colors.clone(),
+        regressor: run.regressor.clone(),
+        encoder2d,
+        encoder3d,
+        head,
+        final_layer: run.basis.layer().clone(),
+    })?)
+}
+
+/// Makes a layer that wrote codes write `mean + scale · code`.
+fn fold_into_output(layer: &mut LinearWeights, scale: &CodeScale) {
+    layer.weight.iter_mut().for_each(|weight| *weight *= scale.scale);
+    for (bias, mean) in layer.bias.iter_mut().zip(&scale.mean) {
+        *bias = mean + scale.scale * *bias;
+    }
+}
+
+/// Makes a layer that read codes read coefficients: `code = (coefficient - mean) / scale`.
+fn fold_into_input(layer: &mut LinearWeights, scale: &CodeScale) {
+    layer.weight.iter_mut().for_each(|weight| *weight /= scale.scale);
+    let rows = layer.weight.chunks_exact(layer.output_len);
+    for (mean, row) in scale.mean.iter().zip(rows) {
+        layer.bias.iter_mut().zip(row).for_each(|(bias, weight)| *bias -= mean * weight);
+    }
+}
