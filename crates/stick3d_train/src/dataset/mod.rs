@@ -20,7 +20,6 @@ pub use influences::InfluenceTable;
 pub use rotation::{Rotations, rotation};
 pub(crate) use bodies::posed;
 pub(crate) use rotation::turn_coefficients;
-pub(crate) use batch::drawn;
 
 use rand::Rng;
 use rand::SeedableRng as _;

@@ -19,7 +19,7 @@ pub(super) fn hash_text(text: &str) -> String {
 pub(super) fn model(
     input: &TrainInput<'_>,
     config: &TrainConfig,
-    run: &Run<'_>,
+    run: &Run<'_, '_>,
     weights: NetworkWeights,
 ) -> Result<Model, TrainError> {
     let NetworkWeights { mut encoder3d, mut head, mut encoder2d } = weights;

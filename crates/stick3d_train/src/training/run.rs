@@ -74,9 +74,9 @@ pub fn train(
 }
 
 /// Everything that stays the same over a run.
-pub(super) struct Run<'a> {
-    input: &'a TrainInput<'a>,
-    config: &'a TrainConfig,
+pub(super) struct Run<'r, 'a> {
+    input: &'r TrainInput<'a>,
+    config: &'r TrainConfig,
     device: Device,
     pub(super) regressor: JointRegressor,
     pub(super) basis: SkinBasis,
@@ -90,10 +90,10 @@ pub(super) struct Run<'a> {
     identity: String,
 }
 
-impl<'a> Run<'a> {
+impl<'r, 'a> Run<'r, 'a> {
     fn prepare(
-        input: &'a TrainInput<'a>,
-        config: &'a TrainConfig,
+        input: &'r TrainInput<'a>,
+        config: &'r TrainConfig,
         progress: &dyn Progress,
     ) -> Result<Self, TrainError> {
         let TrainInput { figure, rig, .. } = *input;
