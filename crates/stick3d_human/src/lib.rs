@@ -1,1 +1,4 @@
 //! The trained model of the human, embedded: nothing but its bytes.
+
+/// The bytes of `assets/models/human.stick3d`, for `stick3d_model::Model::from_bytes`.
+pub const MODEL: &[u8] = include_bytes!("../../../assets/models/human.stick3d");

@@ -16,6 +16,8 @@ mod kernels;
 pub mod metadata;
 pub mod model;
 pub mod network;
+#[cfg(test)]
+mod synthetic;
 pub mod weights;
 
 pub use architecture::Architecture;

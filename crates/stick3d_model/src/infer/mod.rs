@@ -29,8 +29,8 @@ pub enum InferError {
         /// What it has.
         found: usize,
     },
-    /// A latent has NaN or infinity in it, or makes the networks overflow.
-    #[error("the {what} has a number that is not finite at index {index}")]
+    /// A latent has NaN, infinity or something huge in it, or makes the networks give such.
+    #[error("the {what} has a number that is not finite, or huge, at index {index}")]
     NotFinite {
         /// Of what.
         what: &'static str,
@@ -38,6 +38,9 @@ pub enum InferError {
         index: usize,
     },
 }
+
+/// The largest number that a latent or a coefficient may have: far beyond any body, far from overflow.
+const LARGEST: f32 = 1e9;
 
 /// The ready networks of one model with all memory they need. Running them allocates nothing.
 #[derive(Debug, Clone)]
@@ -247,8 +250,11 @@ fn require(what: &'static str, found: usize, expected: usize) -> Result<(), Infe
 }
 
 fn require_finite(what: &'static str, numbers: &[f32]) -> Result<(), InferError> {
-    match numbers.iter().position(|x| !x.is_finite()) {
+    match numbers.iter().position(|x| x.is_nan() || x.abs() > LARGEST) {
         Some(index) => Err(InferError::NotFinite { what, index }),
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests;

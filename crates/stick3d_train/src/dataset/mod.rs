@@ -18,6 +18,7 @@ pub use batch::{Batch, Batcher};
 pub use bodies::{BodySet, PoseStream, PoseStreams};
 pub use influences::InfluenceTable;
 pub use rotation::{Rotations, rotation};
+pub(crate) use batch::drawn;
 pub(crate) use bodies::posed;
 pub(crate) use rotation::turn_coefficients;
 

@@ -1,1 +1,194 @@
 //! Measuring a model on poses it never saw.
+//!
+//! Test cases are poses from the sampler with a seed of its own, and the library poses that training left out, each turned
+//! at random ([`Rotations::TEST`](crate::dataset::Rotations::TEST)). Each is drawn four times: as it is, with joints
+//! jittered, with bones scaled, with both ([`SketchNoise`]).
+//!
+//! Meshes are compared centred on the figure's root joint, without aligning rotation or scale. Only PA-MPJPE
+//! aligns, as its name says. Every figure stands beside that of the [nearest neighbour](Baseline): the mesh among the
+//! library's training poses in the paper's 21 turns whose sketch is closest.
+
+mod baseline;
+mod metrics;
+mod report;
+
+pub use baseline::Baseline;
+pub use metrics::{Collector, Metrics, procrustes_mean_distance};
+pub use report::{Drawn, Report, TestSet};
+
+use glam::{Quat, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+use stick3d_figure::figure::Figure;
+use stick3d_figure::sketch::{Sketch, SketchError};
+use stick3d_model::{InferError, Inference, Model, ModelError};
+use thiserror::Error;
+
+use crate::dataset::{PoseStream, Rotations, SketchNoise, drawn, posed, random};
+use crate::rig::{Pose, Rig};
+use crate::training::Progress;
+
+/// What a measurement is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct EvalConfig {
+    /// What rotations and disturbances depend on; the poses depend on the stream.
+    pub seed: u64,
+    /// How many poses are drawn from the sampler, each turned once.
+    pub sampled_poses: usize,
+    /// How often each held-out library pose is turned.
+    pub turns_per_library_pose: usize,
+}
+
+impl Default for EvalConfig {
+    fn default() -> Self {
+        Self { seed: 20_220_811, sampled_poses: 400, turns_per_library_pose: 10 }
+    }
+}
+
+/// What a model is measured on.
+pub struct EvalInput<'a> {
+    /// The body.
+    pub rig: &'a Rig,
+    /// Library poses that were trained on: the baseline's.
+    pub library: &'a [Pose],
+    /// Library poses that were not.
+    pub held_out: &'a [Pose],
+    /// Sampled poses, from a seed that training does not use.
+    pub stream: PoseStream<'a>,
+}
+
+/// Why a model could not be measured.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum EvalError {
+    /// The model is for another mesh.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A test body has no sketch.
+    #[error("a test body has no sketch: {0}")]
+    Sketch(#[from] SketchError),
+    /// The model gave no mesh.
+    #[error(transparent)]
+    Infer(#[from] InferError),
+    /// The baseline has no meshes.
+    #[error("there are no library poses for the nearest-neighbour baseline; give at least one")]
+    NoLibrary,
+}
+
+/// The four ways in which every test case is drawn.
+pub const DRAWN: [(&str, SketchNoise); 4] = [
+    ("clean", SketchNoise::CLEAN),
+    ("joints jittered by 2.5 cm", SketchNoise { jitter_m: 0.025, bone_scale: 0.0 }),
+    ("bones scaled by 15 %", SketchNoise { jitter_m: 0.0, bone_scale: 0.15 }),
+    ("both", SketchNoise { jitter_m: 0.025, bone_scale: 0.15 }),
+];
+
+/// Measures a model and the baseline.
+///
+/// # Errors
+/// [`EvalError`].
+pub fn evaluate(
+    model: &Model,
+    input: EvalInput<'_>,
+    config: &EvalConfig,
+    progress: &dyn Progress,
+) -> Result<Report, EvalError> {
+    let rig = input.rig;
+    model.require_topology(&stick3d_model::metadata::topology_hash(
+        rig.mesh.positions.len(),
+        &rig.mesh.triangles,
+    ))?;
+    let mut evaluation = Evaluation {
+        figure: model.figure(),
+        baseline: Baseline::new(model.figure(), rig, model.regressor(), input.library)?,
+        inference: Inference::new(model)?,
+        config,
+        model,
+        rig,
+        rng_step: 0,
+        collectors: DRAWN.iter().map(|_| Collectors::default()).collect(),
+    };
+    let library_cases = input.held_out.len() * config.turns_per_library_pose;
+    progress.begin("measuring", config.sampled_poses + library_cases);
+    for pose in input.stream.take(config.sampled_poses) {
+        evaluation.case(&pose, Source::Sampler)?;
+        progress.advance(1);
+    }
+    for pose in input.held_out {
+        for _ in 0..config.turns_per_library_pose {
+            evaluation.case(pose, Source::Library)?;
+            progress.advance(1);
+        }
+    }
+    Ok(evaluation.report(library_cases))
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Source {
+    Sampler,
+    Library,
+}
+
+/// What one way of drawing has yielded so far: for the model and the baseline, by source of the pose.
+#[derive(Debug, Default)]
+struct Collectors {
+    model: [Collector; 2],
+    baseline: [Collector; 2],
+}
+
+struct Evaluation<'a> {
+    figure: &'a Figure,
+    model: &'a Model,
+    rig: &'a Rig,
+    inference: Inference,
+    baseline: Baseline,
+    config: &'a EvalConfig,
+    rng_step: u64,
+    collectors: Vec<Collectors>,
+}
+
+impl Evaluation<'_> {
+    /// Turns a pose, draws it four ways, and compares what comes of it.
+    fn case(&mut self, pose: &Pose, source: Source) -> Result<(), EvalError> {
+        let figure = self.figure;
+        let mut rng = random(self.config.seed, "evaluation", self.rng_step);
+        self.rng_step += 1;
+        let turn = Rotations::TEST.sample(&mut rng);
+        let mut truth = vec![];
+        let rest_joints = posed(self.rig, self.model.regressor(), figure.root, pose, &mut truth);
+        truth.iter_mut().for_each(|point| *point = turn * *point);
+        let joints: Vec<Vec3> = rest_joints.iter().map(|joint| turn * *joint).collect();
+        let mut latent = vec![0.0; self.inference.latent_len()];
+        let mut positions = vec![[0.0; 3]; truth.len()];
+        for (index, (_, noise)) in DRAWN.iter().enumerate() {
+            let mut points: Vec<Vec2> = drawn(Quat::IDENTITY, &joints);
+            noise.apply(figure, &mut points, &mut rng);
+            let sketch = Sketch::new(figure, points)?;
+            self.inference.encode(&sketch, &mut latent)?;
+            self.inference.decode_positions(&latent, &mut positions)?;
+            let found: Vec<Vec3> = positions.iter().copied().map(Vec3::from).collect();
+            let collectors = &mut self.collectors[index];
+            let regressor = self.model.regressor();
+            let slot = source as usize;
+            collectors.model[slot].add(figure, (&found, &regressor.joints(&found)), (&truth, &joints));
+            let nearest = self.baseline.nearest(figure, &sketch)?;
+            collectors.baseline[slot].add(figure, (&nearest, &regressor.joints(&nearest)), (&truth, &joints));
+        }
+        Ok(())
+    }
+
+    fn report(self, library_cases: usize) -> Report {
+        let extent_m = self.model.metadata().normalisation.extent_m;
+        let (mut model, mut baseline) = (vec![], vec![]);
+        for ((name, noise), collectors) in DRAWN.iter().zip(self.collectors) {
+            model.push(Drawn::new(name, *noise, collectors.model, extent_m));
+            baseline.push(Drawn::new(name, *noise, collectors.baseline, extent_m));
+        }
+        let test = TestSet {
+            seed: self.config.seed,
+            sampled_cases: self.config.sampled_poses,
+            library_cases,
+            baseline_meshes: self.baseline.len(),
+        };
+        Report { test, model, baseline }
+    }
+}
