@@ -51,7 +51,10 @@ impl Architecture {
     #[must_use]
     pub fn sizes(&self, input_len: usize, latent_len: usize, vertex_count: usize) -> NetworkSizes {
         let chain = |first: usize, hidden: &[usize], last: Option<usize>| -> Vec<usize> {
-            std::iter::once(first).chain(hidden.iter().copied()).chain(last).collect()
+            std::iter::once(first)
+                .chain(hidden.iter().copied())
+                .chain(last)
+                .collect()
         };
         match self {
             Self::Paper { hidden } => NetworkSizes {
@@ -61,7 +64,12 @@ impl Architecture {
                 relu_after_head: true,
                 latent_len,
             },
-            Self::Basis { rank, encoder3d, head, encoder2d } => NetworkSizes {
+            Self::Basis {
+                rank,
+                encoder3d,
+                head,
+                encoder2d,
+            } => NetworkSizes {
                 encoder2d: chain(input_len, encoder2d, Some(latent_len)),
                 encoder3d_trunk: chain(3 * rank, encoder3d, None),
                 head: chain(latent_len, head, Some(3 * rank)),
@@ -95,8 +103,12 @@ mod tests {
 
     #[test]
     fn basis_networks_meet_in_the_coefficients() {
-        let architecture =
-            Architecture::Basis { rank: 96, encoder3d: vec![512], head: vec![300], encoder2d: vec![768, 700] };
+        let architecture = Architecture::Basis {
+            rank: 96,
+            encoder3d: vec![512],
+            head: vec![300],
+            encoder2d: vec![768, 700],
+        };
         let sizes = architecture.sizes(34, 256, 12_500);
         assert_eq!(sizes.encoder2d, [34, 768, 700, 256]);
         assert_eq!(sizes.encoder3d_trunk, [288, 512]);

@@ -8,7 +8,9 @@ use std::path::Path;
 /// # Errors
 /// Whatever the file system answers; the message names `path`. What stood at `path` before is then untouched.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
     let attempt = || {
         let mut file = tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))?;
         file.write_all(bytes)?;
@@ -17,7 +19,10 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Ok(())
     };
     attempt().map_err(|error: io::Error| {
-        io::Error::new(error.kind(), format!("cannot write {}: {error}", path.display()))
+        io::Error::new(
+            error.kind(),
+            format!("cannot write {}: {error}", path.display()),
+        )
     })
 }
 
@@ -38,6 +43,9 @@ mod tests {
     #[test]
     fn says_which_file_could_not_be_written() {
         let error = write_atomically("/nonexistent-folder/out.bin".as_ref(), b"x").unwrap_err();
-        assert!(error.to_string().contains("/nonexistent-folder/out.bin"), "{error}");
+        assert!(
+            error.to_string().contains("/nonexistent-folder/out.bin"),
+            "{error}"
+        );
     }
 }

@@ -86,7 +86,7 @@ pub(crate) fn tanh(x: f32) -> f32 {
         6.372_619_3e-4,
         4.893_524_6e-3,
     ];
-    let even = [1.198_258_4e-6, 1.185_347e-4, 2.268_434_6e-3, 4.893_525_2e-3];
+    let even = [1.198_258_4e-6, 1.185_347e-4, 2.268_434_6e-3, 4.893_525e-3];
     let numerator = odd.iter().fold(0.0, |sum, c| sum * square + c);
     let denominator = even.iter().fold(0.0, |sum, c| sum * square + c);
     x * numerator / denominator
@@ -99,12 +99,25 @@ mod tests {
     #[test]
     fn accumulate_is_the_matrix_product() {
         let (rows_count, row_len) = (11, 2 * TILE + 37);
-        let rows: Vec<f32> = (0..rows_count * row_len).map(|i| ((i * 31 % 101) as f32 - 50.0) / 64.0).collect();
-        let input: Vec<f32> = (0..rows_count).map(|i| if i % 3 == 1 { 0.0 } else { i as f32 / 4.0 - 1.0 }).collect();
+        let rows: Vec<f32> = (0..rows_count * row_len)
+            .map(|i| ((i * 31 % 101) as f32 - 50.0) / 64.0)
+            .collect();
+        let input: Vec<f32> = (0..rows_count)
+            .map(|i| {
+                if i % 3 == 1 {
+                    0.0
+                } else {
+                    i as f32 / 4.0 - 1.0
+                }
+            })
+            .collect();
         let mut output = vec![0.5; row_len];
         accumulate(&input, &rows, &mut output);
         for (j, out) in output.iter().enumerate() {
-            let expected: f32 = 0.5 + (0..rows_count).map(|i| input[i] * rows[i * row_len + j]).sum::<f32>();
+            let expected: f32 = 0.5
+                + (0..rows_count)
+                    .map(|i| input[i] * rows[i * row_len + j])
+                    .sum::<f32>();
             assert!((out - expected).abs() < 1e-5, "{j}: {out} {expected}");
         }
         accumulate(&input, &[], &mut []);
@@ -114,7 +127,12 @@ mod tests {
     fn tanh_is_close_everywhere() {
         for i in -120_000..=120_000 {
             let x = i as f32 * 1e-4;
-            assert!((tanh(x) - x.tanh()).abs() < 1e-6, "{x}: {} {}", tanh(x), x.tanh());
+            assert!(
+                (tanh(x) - x.tanh()).abs() < 1e-6,
+                "{x}: {} {}",
+                tanh(x),
+                x.tanh()
+            );
         }
         assert!(tanh(f32::NAN).is_nan());
     }

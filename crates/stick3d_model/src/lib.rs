@@ -8,6 +8,7 @@
 //! - [`export`] writes meshes for other programs.
 
 pub mod architecture;
+pub mod export;
 pub mod file;
 pub mod files;
 pub mod final_layer;

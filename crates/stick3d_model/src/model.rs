@@ -71,8 +71,10 @@ impl Model {
     /// # Errors
     /// [`ModelError::Io`], and those of [`Model::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, ModelError> {
-        let bytes = std::fs::read(path)
-            .map_err(|source| ModelError::Io { path: path.to_owned(), source })?;
+        let bytes = std::fs::read(path).map_err(|source| ModelError::Io {
+            path: path.to_owned(),
+            source,
+        })?;
         Self::from_bytes(&bytes)
     }
 
@@ -81,8 +83,10 @@ impl Model {
     /// # Errors
     /// [`ModelError::Io`], and those of [`Model::to_bytes`].
     pub fn save(&self, path: &Path) -> Result<(), ModelError> {
-        write_atomically(path, &self.to_bytes()?)
-            .map_err(|source| ModelError::Io { path: path.to_owned(), source })
+        write_atomically(path, &self.to_bytes()?).map_err(|source| ModelError::Io {
+            path: path.to_owned(),
+            source,
+        })
     }
 
     /// Fails unless the mesh is wired as `expected_hash` says (see [`topology_hash`]).
@@ -94,7 +98,10 @@ impl Model {
         if found == expected_hash {
             return Ok(());
         }
-        Err(ModelError::WrongTopology { expected: expected_hash.to_owned(), found: found.clone() })
+        Err(ModelError::WrongTopology {
+            expected: expected_hash.to_owned(),
+            found: found.clone(),
+        })
     }
 
     /// The figure it draws.
@@ -171,26 +178,62 @@ impl Model {
 }
 
 fn check_mesh(parts: &ModelParts) -> Result<(), ModelError> {
-    let ModelParts { metadata, triangles, colors, regressor, final_layer, .. } = parts;
+    let ModelParts {
+        metadata,
+        triangles,
+        colors,
+        regressor,
+        final_layer,
+        ..
+    } = parts;
     let vertex_count = metadata.vertex_count;
-    expect("vertices of the final layer", final_layer.vertex_count(), vertex_count)?;
+    expect(
+        "vertices of the final layer",
+        final_layer.vertex_count(),
+        vertex_count,
+    )?;
     expect("colours", colors.len(), vertex_count)?;
-    expect("joints of the regressor", regressor.joint_count(), metadata.figure.joint_count())?;
+    expect(
+        "joints of the regressor",
+        regressor.joint_count(),
+        metadata.figure.joint_count(),
+    )?;
     regressor.validate(vertex_count)?;
-    if let Some(index) = triangles.as_flattened().iter().find(|i| **i as usize >= vertex_count) {
-        return Err(ModelError::TriangleOutOfRange { index: *index, vertex_count });
+    if let Some(index) = triangles
+        .as_flattened()
+        .iter()
+        .find(|i| **i as usize >= vertex_count)
+    {
+        return Err(ModelError::TriangleOutOfRange {
+            index: *index,
+            vertex_count,
+        });
     }
     let found = topology_hash(vertex_count, triangles);
     if found != metadata.topology_hash {
-        return Err(ModelError::WrongTopology { expected: metadata.topology_hash.clone(), found });
+        return Err(ModelError::WrongTopology {
+            expected: metadata.topology_hash.clone(),
+            found,
+        });
     }
     Ok(())
 }
 
 fn check_networks(parts: &ModelParts) -> Result<(), ModelError> {
-    let ModelParts { metadata, encoder2d, encoder3d, head, final_layer, .. } = parts;
+    let ModelParts {
+        metadata,
+        encoder2d,
+        encoder3d,
+        head,
+        final_layer,
+        ..
+    } = parts;
     let latent_len = metadata.latent_len;
-    let sizes = metadata.architecture.sizes(metadata.figure.input_len(), latent_len, metadata.vertex_count);
+    let sizes = metadata.architecture.sizes(
+        metadata.figure.input_len(),
+        latent_len,
+        metadata.vertex_count,
+    );
     for found in [
         encoder2d.widths().last().copied().unwrap_or(0),
         encoder3d.mean.output_len,
@@ -198,31 +241,78 @@ fn check_networks(parts: &ModelParts) -> Result<(), ModelError> {
         head.widths().first().copied().unwrap_or(0),
     ] {
         if found != latent_len {
-            return Err(ModelError::WrongLatentLength { expected: latent_len, found });
+            return Err(ModelError::WrongLatentLength {
+                expected: latent_len,
+                found,
+            });
         }
     }
     let trunk_width = sizes.encoder3d_trunk.last().copied().unwrap_or(0);
-    expect("input of Encoder3D's mean", encoder3d.mean.input_len, trunk_width)?;
-    expect("input of Encoder3D's variance", encoder3d.log_variance.input_len, trunk_width)?;
-    expect("coefficients of the final layer", final_layer.coefficient_len(), sizes.coefficient_len())?;
+    expect(
+        "input of Encoder3D's mean",
+        encoder3d.mean.input_len,
+        trunk_width,
+    )?;
+    expect(
+        "input of Encoder3D's variance",
+        encoder3d.log_variance.input_len,
+        trunk_width,
+    )?;
+    expect(
+        "coefficients of the final layer",
+        final_layer.coefficient_len(),
+        sizes.coefficient_len(),
+    )?;
     for (part, mlp, widths, relu) in [
         ("Encoder2D", encoder2d, &sizes.encoder2d, false),
-        ("the trunk of Encoder3D", &encoder3d.trunk, &sizes.encoder3d_trunk, true),
-        ("the decoder's head", head, &sizes.head, sizes.relu_after_head),
+        (
+            "the trunk of Encoder3D",
+            &encoder3d.trunk,
+            &sizes.encoder3d_trunk,
+            true,
+        ),
+        (
+            "the decoder's head",
+            head,
+            &sizes.head,
+            sizes.relu_after_head,
+        ),
     ] {
-        let consistent = mlp.layers.iter().all(crate::weights::LinearWeights::is_consistent);
+        let consistent = mlp
+            .layers
+            .iter()
+            .all(crate::weights::LinearWeights::is_consistent);
         if &mlp.widths() != widths || mlp.relu_after_last != relu || !consistent {
-            return Err(ModelError::Architecture { part, expected: widths.clone(), found: mlp.widths() });
+            return Err(ModelError::Architecture {
+                part,
+                expected: widths.clone(),
+                found: mlp.widths(),
+            });
         }
     }
-    for (part, layer) in [("mean", &encoder3d.mean), ("log-variance", &encoder3d.log_variance)] {
+    for (part, layer) in [
+        ("mean", &encoder3d.mean),
+        ("log-variance", &encoder3d.log_variance),
+    ] {
         if !layer.is_consistent() {
-            return Err(ModelError::Count { what: part, expected: layer.output_len, found: layer.bias.len() });
+            return Err(ModelError::Count {
+                what: part,
+                expected: layer.output_len,
+                found: layer.bias.len(),
+            });
         }
     }
     Ok(())
 }
 
 fn expect(what: &'static str, found: usize, expected: usize) -> Result<(), ModelError> {
-    if found == expected { Ok(()) } else { Err(ModelError::Count { what, expected, found }) }
+    if found == expected {
+        Ok(())
+    } else {
+        Err(ModelError::Count {
+            what,
+            expected,
+            found,
+        })
+    }
 }

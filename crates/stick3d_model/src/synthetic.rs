@@ -36,9 +36,12 @@ pub(crate) fn model(kind: Kind) -> Model {
     let (vertex_count, triangles) = torus();
     let architecture = match kind {
         Kind::Dense => Architecture::Paper { hidden: 7 },
-        Kind::Basis | Kind::Skinned => {
-            Architecture::Basis { rank: RANK, encoder3d: vec![12], head: vec![10, 9], encoder2d: vec![16, 11] }
-        }
+        Kind::Basis | Kind::Skinned => Architecture::Basis {
+            rank: RANK,
+            encoder3d: vec![12],
+            head: vec![10, 9],
+            encoder2d: vec![16, 11],
+        },
     };
     let sizes = architecture.sizes(figure.input_len(), LATENT, vertex_count);
     let mut numbers = Numbers(1);
@@ -52,7 +55,9 @@ pub(crate) fn model(kind: Kind) -> Model {
     };
     let head = mlp(&sizes.head, sizes.relu_after_head, &mut numbers);
     let final_layer = final_layer(kind, sizes.coefficient_len(), vertex_count, &mut numbers);
-    let rows = (0..figure.joint_count() as u32).map(|j| vec![(j, 0.25), (j + 20, 0.75)]).collect();
+    let rows = (0..figure.joint_count() as u32)
+        .map(|j| vec![(j, 0.25), (j + 20, 0.75)])
+        .collect();
     let metadata = Metadata {
         format_version: FORMAT_VERSION,
         tool_version: TOOL_VERSION.to_owned(),
@@ -74,7 +79,9 @@ pub(crate) fn model(kind: Kind) -> Model {
     let parts = ModelParts {
         metadata,
         triangles,
-        colors: (0..vertex_count).map(|v| [v as u8, 100, 200, 255]).collect(),
+        colors: (0..vertex_count)
+            .map(|v| [v as u8, 100, 200, 255])
+            .collect(),
         regressor: JointRegressor { rows },
         encoder2d,
         encoder3d,
@@ -87,9 +94,9 @@ pub(crate) fn model(kind: Kind) -> Model {
 fn final_layer(kind: Kind, len: usize, vertex_count: usize, numbers: &mut Numbers) -> FinalLayer {
     let sound = "the synthetic layer fits together";
     match kind {
-        Kind::Dense => {
-            FinalLayer::Dense(DenseLayer::new(linear(len, 3 * vertex_count, numbers), 0.9).expect(sound))
-        }
+        Kind::Dense => FinalLayer::Dense(
+            DenseLayer::new(linear(len, 3 * vertex_count, numbers), 0.9).expect(sound),
+        ),
         Kind::Basis => {
             let columns = (0..RANK * vertex_count).map(|_| numbers.next()).collect();
             FinalLayer::Basis(BasisLayer::new(vertex_count, columns).expect(sound))
@@ -97,10 +104,14 @@ fn final_layer(kind: Kind, len: usize, vertex_count: usize, numbers: &mut Number
         Kind::Skinned => {
             let bone_count = 4;
             let row = |v: usize| (0..=(v % 3)).map(move |i| ((v + i) % bone_count) as u16);
-            let offsets = (0..=vertex_count).map(|v| (0..v).map(|v| v % 3 + 1).sum::<usize>() as u32).collect();
+            let offsets = (0..=vertex_count)
+                .map(|v| (0..v).map(|v| v % 3 + 1).sum::<usize>() as u32)
+                .collect();
             let bones: Vec<u16> = (0..vertex_count).flat_map(row).collect();
             let parts = SkinnedParts {
-                rest: (0..vertex_count).map(|_| [numbers.next(), numbers.next(), numbers.next()]).collect(),
+                rest: (0..vertex_count)
+                    .map(|_| [numbers.next(), numbers.next(), numbers.next()])
+                    .collect(),
                 offsets,
                 weights: bones.iter().map(|_| numbers.next().abs()).collect(),
                 bones,
@@ -114,24 +125,39 @@ fn final_layer(kind: Kind, len: usize, vertex_count: usize, numbers: &mut Number
 
 fn torus() -> (usize, Vec<[u32; 3]>) {
     let vertex = |ring: usize, point: usize| ((ring % RINGS) * ROUND + point % ROUND) as u32;
-    let triangles = (0..RINGS).flat_map(|r| (0..ROUND).map(move |p| (r, p))).flat_map(|(r, p)| {
-        let [a, b, c, d] = [vertex(r, p), vertex(r + 1, p), vertex(r + 1, p + 1), vertex(r, p + 1)];
-        [[a, b, c], [a, c, d]]
-    });
+    let triangles = (0..RINGS)
+        .flat_map(|r| (0..ROUND).map(move |p| (r, p)))
+        .flat_map(|(r, p)| {
+            let [a, b, c, d] = [
+                vertex(r, p),
+                vertex(r + 1, p),
+                vertex(r + 1, p + 1),
+                vertex(r, p + 1),
+            ];
+            [[a, b, c], [a, c, d]]
+        });
     (RINGS * ROUND, triangles.collect())
 }
 
 fn mlp(widths: &[usize], relu_after_last: bool, numbers: &mut Numbers) -> MlpWeights {
     let mut mlp = MlpWeights::zeros(widths, relu_after_last);
-    mlp.layers.iter_mut().for_each(|layer| *layer = linear(layer.input_len, layer.output_len, numbers));
+    mlp.layers
+        .iter_mut()
+        .for_each(|layer| *layer = linear(layer.input_len, layer.output_len, numbers));
     mlp
 }
 
 fn linear(input_len: usize, output_len: usize, numbers: &mut Numbers) -> LinearWeights {
     let mut layer = LinearWeights::zeros(input_len, output_len);
     let scale = 1.5 / (input_len as f32).sqrt();
-    layer.weight.iter_mut().for_each(|weight| *weight = scale * numbers.next());
-    layer.bias.iter_mut().for_each(|bias| *bias = 0.1 * numbers.next());
+    layer
+        .weight
+        .iter_mut()
+        .for_each(|weight| *weight = scale * numbers.next());
+    layer
+        .bias
+        .iter_mut()
+        .for_each(|bias| *bias = 0.1 * numbers.next());
     layer.round_to_half();
     layer
 }

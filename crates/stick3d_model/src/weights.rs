@@ -69,7 +69,10 @@ impl LinearWeights {
     #[must_use]
     pub fn forward(&self, input: &[f32]) -> Vec<f32> {
         let mut output = self.bias.clone();
-        for (value, row) in input.iter().zip(self.weight.chunks_exact(self.output_len.max(1))) {
+        for (value, row) in input
+            .iter()
+            .zip(self.weight.chunks_exact(self.output_len.max(1)))
+        {
             for (out, weight) in output.iter_mut().zip(row) {
                 *out += value * weight;
             }
@@ -82,15 +85,24 @@ impl MlpWeights {
     /// A perceptron of zeros with the given widths, from input to output.
     #[must_use]
     pub fn zeros(widths: &[usize], relu_after_last: bool) -> Self {
-        let layers = widths.windows(2).map(|pair| LinearWeights::zeros(pair[0], pair[1])).collect();
-        Self { layers, relu_after_last }
+        let layers = widths
+            .windows(2)
+            .map(|pair| LinearWeights::zeros(pair[0], pair[1]))
+            .collect();
+        Self {
+            layers,
+            relu_after_last,
+        }
     }
 
     /// The widths from input to output; empty when there is no layer.
     #[must_use]
     pub fn widths(&self) -> Vec<usize> {
         let first = self.layers.first().map(|layer| layer.input_len);
-        first.into_iter().chain(self.layers.iter().map(|layer| layer.output_len)).collect()
+        first
+            .into_iter()
+            .chain(self.layers.iter().map(|layer| layer.output_len))
+            .collect()
     }
 
     /// Whether layer `index` is followed by a ReLU.
@@ -101,7 +113,9 @@ impl MlpWeights {
 
     /// Rounds all weights to half precision; see [`LinearWeights::round_to_half`].
     pub fn round_to_half(&mut self) {
-        self.layers.iter_mut().for_each(LinearWeights::round_to_half);
+        self.layers
+            .iter_mut()
+            .for_each(LinearWeights::round_to_half);
     }
 
     /// Runs the perceptron, the plain reference.
@@ -130,7 +144,10 @@ impl Encoder3dWeights {
     #[must_use]
     pub fn forward(&self, input: &[f32]) -> (Vec<f32>, Vec<f32>) {
         let hidden = self.trunk.forward(input);
-        (self.mean.forward(&hidden), self.log_variance.forward(&hidden))
+        (
+            self.mean.forward(&hidden),
+            self.log_variance.forward(&hidden),
+        )
     }
 }
 
@@ -147,7 +164,10 @@ mod tests {
             bias: vec![0.5, 0.0, -0.5],
         };
         assert_eq!(layer.forward(&[2.0, -1.0]), [-7.5, -16.0, -24.5]);
-        let mlp = MlpWeights { layers: vec![layer], relu_after_last: true };
+        let mlp = MlpWeights {
+            layers: vec![layer],
+            relu_after_last: true,
+        };
         assert_eq!(mlp.forward(&[1.0, 0.0]), [1.5, 2.0, 2.5]);
         assert_eq!(mlp.forward(&[-1.0, 0.0]), [0.0, 0.0, 0.0]);
         assert_eq!(mlp.widths(), [2, 3]);

@@ -23,7 +23,9 @@ pub enum ModelError {
     #[error("the model file is empty; fetch it again, or train a model with `stick3d train`")]
     Empty,
     /// The file ends before its arrays do.
-    #[error("the model file is cut off: it has {found} bytes, its header promises {expected}; fetch it again")]
+    #[error(
+        "the model file is cut off: it has {found} bytes, its header promises {expected}; fetch it again"
+    )]
     Truncated {
         /// How many bytes the header promises.
         expected: u64,
@@ -34,10 +36,14 @@ pub enum ModelError {
     #[error("not a model file: it is no valid safetensors file ({0}); expected a .stick3d file")]
     NotSafetensors(String),
     /// Safetensors, but not ours.
-    #[error("a safetensors file, but no stick3d model: it has no `stick3d` metadata; expected a .stick3d file")]
+    #[error(
+        "a safetensors file, but no stick3d model: it has no `stick3d` metadata; expected a .stick3d file"
+    )]
     Foreign,
     /// Made by a later version.
-    #[error("the model file has format version {found}, this program reads up to {supported}; update stick3d")]
+    #[error(
+        "the model file has format version {found}, this program reads up to {supported}; update stick3d"
+    )]
     NewerVersion {
         /// What the file has.
         found: u32,
@@ -75,7 +81,9 @@ pub enum ModelError {
         index: usize,
     },
     /// The mesh is wired differently.
-    #[error("the model is for another mesh: topology {found}, expected {expected}; use a model of the same figure")]
+    #[error(
+        "the model is for another mesh: topology {found}, expected {expected}; use a model of the same figure"
+    )]
     WrongTopology {
         /// The hash wanted.
         expected: String,

@@ -24,7 +24,13 @@ fn checksum_of_metadata(body: &str) -> sha2::Sha256 {
 }
 
 /// Adds one array; the order of the arrays is that of their names.
-fn add_to_checksum(hasher: &mut sha2::Sha256, name: &str, dtype: Dtype, shape: &[usize], data: &[u8]) {
+fn add_to_checksum(
+    hasher: &mut sha2::Sha256,
+    name: &str,
+    dtype: Dtype,
+    shape: &[usize],
+    data: &[u8],
+) {
     use sha2::Digest as _;
     hasher.update(format!("\n{name} {dtype:?} {shape:?}\n"));
     hasher.update(data);

@@ -25,17 +25,23 @@ pub(crate) fn read(bytes: &[u8]) -> Result<ModelParts, ModelError> {
     if arrays.checksum(body) != checksum {
         return Err(ModelError::Checksum);
     }
-    let metadata: Metadata = serde_json::from_str(body).map_err(|e| ModelError::Metadata(e.to_string()))?;
+    let metadata: Metadata =
+        serde_json::from_str(body).map_err(|e| ModelError::Metadata(e.to_string()))?;
     arrays.parts(metadata)
 }
 
 /// The arrays, and the metadata entry.
 fn open(bytes: &[u8]) -> Result<(SafeTensors<'_>, String), ModelError> {
-    let explain = |error: SafeTensorError| truncation(bytes, &error).unwrap_or_else(|| {
-        ModelError::NotSafetensors(error.to_string())
-    });
+    let explain = |error: SafeTensorError| {
+        truncation(bytes, &error).unwrap_or_else(|| ModelError::NotSafetensors(error.to_string()))
+    };
     let (_, header) = SafeTensors::read_metadata(bytes).map_err(explain)?;
-    let entry = header.metadata().as_ref().and_then(|map| map.get(ENTRY)).ok_or(ModelError::Foreign)?.clone();
+    let entry = header
+        .metadata()
+        .as_ref()
+        .and_then(|map| map.get(ENTRY))
+        .ok_or(ModelError::Foreign)?
+        .clone();
     Ok((SafeTensors::deserialize(bytes).map_err(explain)?, entry))
 }
 
@@ -48,7 +54,10 @@ fn truncation(bytes: &[u8], error: &SafeTensorError) -> Option<ModelError> {
     let header_end = u64::from_le_bytes(*prefix).checked_add(8)?;
     match error {
         SafeTensorError::InvalidHeaderLength if bytes.get(8) == Some(&b'{') => {
-            Some(ModelError::Truncated { expected: header_end, found })
+            Some(ModelError::Truncated {
+                expected: header_end,
+                found,
+            })
         }
         SafeTensorError::MetadataIncompleteBuffer => {
             let header = bytes.get(8..usize::try_from(header_end).ok()?)?;
@@ -63,7 +72,10 @@ fn truncation(bytes: &[u8], error: &SafeTensorError) -> Option<ModelError> {
 /// Where the last array of a safetensors header ends.
 fn last_offset(header: &[u8]) -> Option<u64> {
     let header: serde_json::Value = serde_json::from_slice(header).ok()?;
-    let ends = header.as_object()?.values().filter_map(|array| array.get("data_offsets")?.get(1)?.as_u64());
+    let ends = header
+        .as_object()?
+        .values()
+        .filter_map(|array| array.get("data_offsets")?.get(1)?.as_u64());
     ends.max()
 }
 
@@ -73,9 +85,13 @@ fn require_known_version(body: &str) -> Result<(), ModelError> {
     struct Version {
         format_version: u32,
     }
-    let version: Version = serde_json::from_str(body).map_err(|e| ModelError::Metadata(e.to_string()))?;
+    let version: Version =
+        serde_json::from_str(body).map_err(|e| ModelError::Metadata(e.to_string()))?;
     if version.format_version > FORMAT_VERSION {
-        return Err(ModelError::NewerVersion { found: version.format_version, supported: FORMAT_VERSION });
+        return Err(ModelError::NewerVersion {
+            found: version.format_version,
+            supported: FORMAT_VERSION,
+        });
     }
     Ok(())
 }
@@ -88,15 +104,22 @@ impl Arrays<'_> {
         arrays.sort_by(|a, b| a.0.cmp(&b.0));
         let mut hasher = checksum_of_metadata(body);
         for (name, array) in &arrays {
-            add_to_checksum(&mut hasher, name, array.dtype(), array.shape(), array.data());
+            add_to_checksum(
+                &mut hasher,
+                name,
+                array.dtype(),
+                array.shape(),
+                array.data(),
+            );
         }
         hex(&hasher.finalize())
     }
 
     /// The bytes of an array of a given type, with its shape if it has as many dimensions as `rank`.
     fn get(&self, name: &str, dtype: Dtype, rank: usize) -> Result<TensorView<'_>, ModelError> {
-        let array =
-            self.0.tensor(name).map_err(|_| ModelError::MissingArray { name: name.to_owned() })?;
+        let array = self.0.tensor(name).map_err(|_| ModelError::MissingArray {
+            name: name.to_owned(),
+        })?;
         if array.dtype() != dtype || array.shape().len() != rank {
             return Err(ModelError::Array {
                 name: name.to_owned(),
@@ -120,7 +143,10 @@ impl Arrays<'_> {
     }
 
     fn u32(&self, name: &str, rank: usize) -> Result<Vec<u32>, ModelError> {
-        Ok(numbers(self.get(name, Dtype::U32, rank)?.data(), u32::from_le_bytes))
+        Ok(numbers(
+            self.get(name, Dtype::U32, rank)?.data(),
+            u32::from_le_bytes,
+        ))
     }
 
     /// An array of rows of `WIDTH` numbers.
@@ -145,12 +171,27 @@ impl Arrays<'_> {
     fn linear(&self, name: &str) -> Result<LinearWeights, ModelError> {
         let (shape, weight) = self.half(&format!("{name}.weight"), 2)?;
         let (_, bias) = self.f32(&format!("{name}.bias"), 1)?;
-        Ok(LinearWeights { input_len: shape[0], output_len: shape[1], weight, bias })
+        Ok(LinearWeights {
+            input_len: shape[0],
+            output_len: shape[1],
+            weight,
+            bias,
+        })
     }
 
-    fn mlp(&self, name: &str, layer_count: usize, relu_after_last: bool) -> Result<MlpWeights, ModelError> {
-        let layers = (0..layer_count).map(|i| self.linear(&format!("{name}.{i}"))).collect::<Result<_, _>>()?;
-        Ok(MlpWeights { layers, relu_after_last })
+    fn mlp(
+        &self,
+        name: &str,
+        layer_count: usize,
+        relu_after_last: bool,
+    ) -> Result<MlpWeights, ModelError> {
+        let layers = (0..layer_count)
+            .map(|i| self.linear(&format!("{name}.{i}")))
+            .collect::<Result<_, _>>()?;
+        Ok(MlpWeights {
+            layers,
+            relu_after_last,
+        })
     }
 
     fn has(&self, name: &str) -> bool {
@@ -167,7 +208,10 @@ impl Arrays<'_> {
         }
         let linear = self.linear("final.dense")?;
         let (_, extent) = self.f32("final.dense.extent", 1)?;
-        Ok(FinalLayer::Dense(DenseLayer::new(linear, extent.first().copied().unwrap_or(f32::NAN))?))
+        Ok(FinalLayer::Dense(DenseLayer::new(
+            linear,
+            extent.first().copied().unwrap_or(f32::NAN),
+        )?))
     }
 
     fn skinned(&self) -> Result<SkinnedLayer, ModelError> {
@@ -190,7 +234,11 @@ impl Arrays<'_> {
         let (_, weights) = self.f32("regressor.weights", 1)?;
         let row = |range: &[u32]| -> Option<Vec<(u32, f32)>> {
             let range = range[0] as usize..range[1] as usize;
-            let row = vertices.get(range.clone())?.iter().copied().zip(weights.get(range)?.iter().copied());
+            let row = vertices
+                .get(range.clone())?
+                .iter()
+                .copied()
+                .zip(weights.get(range)?.iter().copied());
             Some(row.collect())
         };
         let rows = offsets.windows(2).map(row).collect::<Option<Vec<_>>>();
@@ -204,7 +252,10 @@ impl Arrays<'_> {
 
     fn parts(&self, metadata: Metadata) -> Result<ModelParts, ModelError> {
         let input_len = metadata.figure.input_len();
-        let sizes = metadata.architecture.sizes(input_len, metadata.latent_len, metadata.vertex_count);
+        let sizes =
+            metadata
+                .architecture
+                .sizes(input_len, metadata.latent_len, metadata.vertex_count);
         let layers = |widths: &[usize]| widths.len().saturating_sub(1);
         let triangles = self.u32("mesh.triangles", 2)?;
         let colors = self.get("mesh.colors", Dtype::U8, 2)?.data().to_vec();
@@ -226,12 +277,19 @@ impl Arrays<'_> {
 }
 
 fn numbers<T, const BYTES: usize>(data: &[u8], number: impl Fn([u8; BYTES]) -> T) -> Vec<T> {
-    data.as_chunks::<BYTES>().0.iter().map(|bytes| number(*bytes)).collect()
+    data.as_chunks::<BYTES>()
+        .0
+        .iter()
+        .map(|bytes| number(*bytes))
+        .collect()
 }
 
 fn finite(name: &str, numbers: Vec<f32>) -> Result<Vec<f32>, ModelError> {
     match numbers.iter().position(|x| !x.is_finite()) {
-        Some(index) => Err(ModelError::NotFinite { name: name.to_owned(), index }),
+        Some(index) => Err(ModelError::NotFinite {
+            name: name.to_owned(),
+            index,
+        }),
         None => Ok(numbers),
     }
 }

@@ -24,7 +24,11 @@ fn what_is_written_is_read() {
         let model = model(kind);
         let bytes = model.to_bytes().unwrap();
         assert_eq!(read(&bytes).unwrap(), model);
-        assert_eq!(bytes, model.to_bytes().unwrap(), "the same model gives the same bytes");
+        assert_eq!(
+            bytes,
+            model.to_bytes().unwrap(),
+            "the same model gives the same bytes"
+        );
     }
 }
 
@@ -37,7 +41,9 @@ fn files_are_saved_and_loaded() {
     assert_eq!(Model::load(&path).unwrap(), model);
     let error = Model::load(&folder.path().join("none.stick3d")).unwrap_err();
     assert!(matches!(error, ModelError::Io { .. }) && error.to_string().contains("none.stick3d"));
-    let error = model.save(&folder.path().join("no/such/folder.stick3d")).unwrap_err();
+    let error = model
+        .save(&folder.path().join("no/such/folder.stick3d"))
+        .unwrap_err();
     assert!(matches!(error, ModelError::Io { .. }));
 }
 
@@ -49,7 +55,10 @@ fn empty_and_cut_files_are_told_apart() {
         let error = read(&bytes[..len]).unwrap_err();
         match error {
             ModelError::Truncated { expected, found } => {
-                assert!(found == len as u64 && expected > found, "{len}: {expected} {found}");
+                assert!(
+                    found == len as u64 && expected > found,
+                    "{len}: {expected} {found}"
+                );
             }
             // Eight bytes alone are a length, not yet recognisable as a header.
             other => assert!(len == 8, "{len}: {other}"),
@@ -75,15 +84,27 @@ fn other_files_are_foreign() {
 fn patched(from: &str, to: &str) -> Vec<u8> {
     assert_eq!(from.len(), to.len());
     let mut bytes = bytes();
-    let at = bytes.windows(from.len()).position(|window| window == from.as_bytes()).unwrap();
+    let at = bytes
+        .windows(from.len())
+        .position(|window| window == from.as_bytes())
+        .unwrap();
     bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
     bytes
 }
 
 #[test]
 fn a_newer_version_is_named_before_anything_else() {
-    let newer = patched(&format!("\\\"format_version\\\":{FORMAT_VERSION}"), "\\\"format_version\\\":9");
-    assert!(matches!(read(&newer), Err(ModelError::NewerVersion { found: 9, supported: FORMAT_VERSION })));
+    let newer = patched(
+        &format!("\\\"format_version\\\":{FORMAT_VERSION}"),
+        "\\\"format_version\\\":9",
+    );
+    assert!(matches!(
+        read(&newer),
+        Err(ModelError::NewerVersion {
+            found: 9,
+            supported: FORMAT_VERSION
+        })
+    ));
 }
 
 #[test]
@@ -95,21 +116,40 @@ fn changed_metadata_fails_the_checksum() {
 #[test]
 fn another_topology_or_latent_is_refused() {
     let sound = model(Kind::Skinned);
-    assert!(sound.require_topology(&sound.metadata().topology_hash).is_ok());
-    assert!(matches!(sound.require_topology("00ff"), Err(ModelError::WrongTopology { .. })));
+    assert!(
+        sound
+            .require_topology(&sound.metadata().topology_hash)
+            .is_ok()
+    );
+    assert!(matches!(
+        sound.require_topology("00ff"),
+        Err(ModelError::WrongTopology { .. })
+    ));
 
     let mut parts = sound.clone().into_parts();
     parts.triangles.swap(0, 1);
-    assert!(matches!(Model::new(parts), Err(ModelError::WrongTopology { .. })));
+    assert!(matches!(
+        Model::new(parts),
+        Err(ModelError::WrongTopology { .. })
+    ));
 
     let mut parts = sound.clone().into_parts();
     parts.metadata.latent_len = 9;
     // The checksum holds: such a file was written on purpose, by a broken tool.
-    assert!(matches!(Model::new(parts), Err(ModelError::WrongLatentLength { expected: 9, found: 8 })));
+    assert!(matches!(
+        Model::new(parts),
+        Err(ModelError::WrongLatentLength {
+            expected: 9,
+            found: 8
+        })
+    ));
 
     let mut parts = sound.clone().into_parts();
     parts.head.layers.pop();
-    assert!(matches!(Model::new(parts), Err(ModelError::Architecture { .. })));
+    assert!(matches!(
+        Model::new(parts),
+        Err(ModelError::Architecture { .. })
+    ));
 
     let mut parts = sound.clone().into_parts();
     parts.colors.pop();
@@ -126,7 +166,9 @@ fn numbers_that_are_not_finite_are_refused() {
     parts.head.layers[1].bias[3] = f32::NAN;
     let bytes = write(&parts).unwrap();
     match read(&bytes) {
-        Err(ModelError::NotFinite { name, index }) => assert_eq!((name.as_str(), index), ("head.1.bias", 3)),
+        Err(ModelError::NotFinite { name, index }) => {
+            assert_eq!((name.as_str(), index), ("head.1.bias", 3))
+        }
         other => panic!("{other:?}"),
     }
 }

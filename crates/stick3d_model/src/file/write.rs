@@ -24,10 +24,23 @@ struct Array {
 struct Arrays(BTreeMap<String, Array>);
 
 impl Arrays {
-    fn put<T: bytemuck::NoUninit>(&mut self, name: &str, dtype: Dtype, shape: &[usize], numbers: &[T]) {
+    fn put<T: bytemuck::NoUninit>(
+        &mut self,
+        name: &str,
+        dtype: Dtype,
+        shape: &[usize],
+        numbers: &[T],
+    ) {
         // Every machine that this runs on in practice is little-endian, as the format is.
         let data = bytemuck::cast_slice(numbers).to_vec();
-        self.0.insert(name.to_owned(), Array { dtype, shape: shape.to_vec(), data });
+        self.0.insert(
+            name.to_owned(),
+            Array {
+                dtype,
+                shape: shape.to_vec(),
+                data,
+            },
+        );
     }
 
     fn put_f32(&mut self, name: &str, shape: &[usize], numbers: &[f32]) {
@@ -44,7 +57,11 @@ impl Arrays {
     }
 
     fn put_linear(&mut self, name: &str, layer: &LinearWeights) {
-        self.put_half(&format!("{name}.weight"), &[layer.input_len, layer.output_len], &layer.weight);
+        self.put_half(
+            &format!("{name}.weight"),
+            &[layer.input_len, layer.output_len],
+            &layer.weight,
+        );
         self.put_f32(&format!("{name}.bias"), &[layer.output_len], &layer.bias);
     }
 
@@ -66,10 +83,27 @@ impl Arrays {
             }
             FinalLayer::Skinned(skinned) => {
                 let parts = skinned.parts();
-                self.put_f32("final.skinned.rest", &[parts.rest.len(), 3], parts.rest.as_flattened());
-                self.put_u32("final.skinned.offsets", &[parts.offsets.len()], &parts.offsets);
-                self.put("final.skinned.bones", Dtype::U16, &[parts.bones.len()], &parts.bones);
-                self.put_f32("final.skinned.weights", &[parts.weights.len()], &parts.weights);
+                self.put_f32(
+                    "final.skinned.rest",
+                    &[parts.rest.len(), 3],
+                    parts.rest.as_flattened(),
+                );
+                self.put_u32(
+                    "final.skinned.offsets",
+                    &[parts.offsets.len()],
+                    &parts.offsets,
+                );
+                self.put(
+                    "final.skinned.bones",
+                    Dtype::U16,
+                    &[parts.bones.len()],
+                    &parts.bones,
+                );
+                self.put_f32(
+                    "final.skinned.weights",
+                    &[parts.weights.len()],
+                    &parts.weights,
+                );
                 let shape = [skinned.rank(), 4 * parts.bone_count];
                 self.put_f32("final.skinned.expansion", &shape, &parts.expansion);
             }
@@ -77,8 +111,17 @@ impl Arrays {
     }
 
     fn put_mesh(&mut self, parts: &ModelParts) {
-        self.put_u32("mesh.triangles", &[parts.triangles.len(), 3], parts.triangles.as_flattened());
-        self.put("mesh.colors", Dtype::U8, &[parts.colors.len(), 4], parts.colors.as_flattened());
+        self.put_u32(
+            "mesh.triangles",
+            &[parts.triangles.len(), 3],
+            parts.triangles.as_flattened(),
+        );
+        self.put(
+            "mesh.colors",
+            Dtype::U8,
+            &[parts.colors.len(), 4],
+            parts.colors.as_flattened(),
+        );
         let rows = &parts.regressor.rows;
         let ends = rows.iter().scan(0_u32, |end, row| {
             *end += row.len() as u32;

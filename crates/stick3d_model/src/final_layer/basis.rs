@@ -22,10 +22,16 @@ impl BasisLayer {
     pub fn new(vertex_count: usize, columns: Vec<f32>) -> Result<Self, FinalLayerError> {
         if columns.is_empty() || vertex_count == 0 {
             let problem = "it is empty".to_owned();
-            return Err(FinalLayerError { what: "columns", problem });
+            return Err(FinalLayerError {
+                what: "columns",
+                problem,
+            });
         }
         expect_len("remainder of a column", columns.len() % vertex_count, 0)?;
-        Ok(Self { vertex_count, columns })
+        Ok(Self {
+            vertex_count,
+            columns,
+        })
     }
 
     /// `[rank][vertex_count]`.
@@ -57,7 +63,11 @@ impl BasisLayer {
         for axis in 0..3 {
             for j in 0..self.rank() {
                 let column = &self.columns[j * self.vertex_count..][..self.vertex_count];
-                let sum: f64 = column.iter().zip(positions).map(|(c, p)| f64::from(c * p[axis])).sum();
+                let sum: f64 = column
+                    .iter()
+                    .zip(positions)
+                    .map(|(c, p)| f64::from(c * p[axis]))
+                    .sum();
                 coefficients[axis * self.rank() + j] = (sum / self.vertex_count as f64) as f32;
             }
         }

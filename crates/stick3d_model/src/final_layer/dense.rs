@@ -17,12 +17,19 @@ impl DenseLayer {
     /// # Errors
     /// When the output is not a whole number of vertices or `extent_m` is not a positive length.
     pub fn new(linear: LinearWeights, extent_m: f32) -> Result<Self, FinalLayerError> {
-        expect_len("weight", linear.weight.len(), linear.input_len * linear.output_len)?;
+        expect_len(
+            "weight",
+            linear.weight.len(),
+            linear.input_len * linear.output_len,
+        )?;
         expect_len("bias", linear.bias.len(), linear.output_len)?;
         expect_len("remainder of a vertex", linear.output_len % 3, 0)?;
         if !(extent_m.is_finite() && extent_m > 0.0) {
             let problem = format!("it is {extent_m}, a positive length is needed");
-            return Err(FinalLayerError { what: "extent", problem });
+            return Err(FinalLayerError {
+                what: "extent",
+                problem,
+            });
         }
         Ok(Self { linear, extent_m })
     }

@@ -74,8 +74,14 @@ impl FinalLayer {
     #[must_use]
     pub fn scratch(&self) -> FinalScratch {
         match self {
-            Self::Dense(layer) => FinalScratch { axis: vec![0.0; layer.linear().output_len], bones: vec![] },
-            Self::Basis(layer) => FinalScratch { axis: vec![0.0; layer.vertex_count()], bones: vec![] },
+            Self::Dense(layer) => FinalScratch {
+                axis: vec![0.0; layer.linear().output_len],
+                bones: vec![],
+            },
+            Self::Basis(layer) => FinalScratch {
+                axis: vec![0.0; layer.vertex_count()],
+                bones: vec![],
+            },
             Self::Skinned(layer) => layer.scratch(),
         }
     }
@@ -88,9 +94,22 @@ impl FinalLayer {
     ///
     /// # Panics
     /// When a slice has another length, or `scratch` was made by a layer of another shape.
-    pub fn evaluate(&self, coefficients: &[f32], scratch: &mut FinalScratch, positions: &mut [[f32; 3]]) {
-        assert_eq!(coefficients.len(), self.coefficient_len(), "one number per coefficient");
-        assert_eq!(positions.len(), self.vertex_count(), "one position per vertex");
+    pub fn evaluate(
+        &self,
+        coefficients: &[f32],
+        scratch: &mut FinalScratch,
+        positions: &mut [[f32; 3]],
+    ) {
+        assert_eq!(
+            coefficients.len(),
+            self.coefficient_len(),
+            "one number per coefficient"
+        );
+        assert_eq!(
+            positions.len(),
+            self.vertex_count(),
+            "one position per vertex"
+        );
         match self {
             Self::Dense(layer) => layer.evaluate(coefficients, scratch, positions),
             Self::Basis(layer) => layer.evaluate(coefficients, scratch, positions),
@@ -116,7 +135,11 @@ impl FinalLayer {
     /// When `positions` has another length than [`FinalLayer::vertex_count`].
     #[must_use]
     pub fn project(&self, positions: &[Vec3]) -> Option<Vec<f32>> {
-        assert_eq!(positions.len(), self.vertex_count(), "one position per vertex");
+        assert_eq!(
+            positions.len(),
+            self.vertex_count(),
+            "one position per vertex"
+        );
         match self {
             Self::Dense(_) => None,
             Self::Basis(layer) => Some(layer.project(positions)),
@@ -130,5 +153,8 @@ fn expect_len(what: &'static str, found: usize, expected: usize) -> Result<(), F
     if found == expected {
         return Ok(());
     }
-    Err(FinalLayerError { what, problem: format!("it has {found} numbers, {expected} are needed") })
+    Err(FinalLayerError {
+        what,
+        problem: format!("it has {found} numbers, {expected} are needed"),
+    })
 }

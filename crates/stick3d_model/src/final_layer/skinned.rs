@@ -40,26 +40,48 @@ impl SkinnedLayer {
     /// # Errors
     /// When the arrays do not fit together.
     pub fn new(parts: SkinnedParts) -> Result<Self, FinalLayerError> {
-        let SkinnedParts { rest, offsets, bones, weights, bone_count, expansion } = &parts;
+        let SkinnedParts {
+            rest,
+            offsets,
+            bones,
+            weights,
+            bone_count,
+            expansion,
+        } = &parts;
         expect_len("offsets", offsets.len(), rest.len() + 1)?;
         expect_len("weights", weights.len(), bones.len())?;
         let ordered = offsets.first() == Some(&0)
             && offsets.is_sorted()
-            && offsets.last().is_some_and(|last| *last as usize == bones.len());
+            && offsets
+                .last()
+                .is_some_and(|last| *last as usize == bones.len());
         if !ordered {
             let problem = "they must rise from 0 to the number of influences".to_owned();
-            return Err(FinalLayerError { what: "offsets", problem });
+            return Err(FinalLayerError {
+                what: "offsets",
+                problem,
+            });
         }
         if let Some(bone) = bones.iter().find(|bone| usize::from(**bone) >= *bone_count) {
             let problem = format!("bone {bone} is named, there are {bone_count}");
-            return Err(FinalLayerError { what: "bones", problem });
+            return Err(FinalLayerError {
+                what: "bones",
+                problem,
+            });
         }
         if expansion.is_empty() || *bone_count == 0 {
             let problem = "it is empty".to_owned();
-            return Err(FinalLayerError { what: "expansion", problem });
+            return Err(FinalLayerError {
+                what: "expansion",
+                problem,
+            });
         }
         let row_len = 4 * bone_count;
-        expect_len("remainder of an expansion row", expansion.len() % row_len, 0)?;
+        expect_len(
+            "remainder of an expansion row",
+            expansion.len() % row_len,
+            0,
+        )?;
         let rank = expansion.len() / row_len;
         Ok(Self { parts, rank })
     }
@@ -83,19 +105,35 @@ impl SkinnedLayer {
     }
 
     pub(super) fn byte_len(&self) -> usize {
-        let SkinnedParts { rest, offsets, bones, weights, expansion, .. } = &self.parts;
-        12 * rest.len() + 4 * offsets.len() + 2 * bones.len() + 4 * weights.len() + 4 * expansion.len()
+        let SkinnedParts {
+            rest,
+            offsets,
+            bones,
+            weights,
+            expansion,
+            ..
+        } = &self.parts;
+        12 * rest.len()
+            + 4 * offsets.len()
+            + 2 * bones.len()
+            + 4 * weights.len()
+            + 4 * expansion.len()
     }
 
     pub(super) fn scratch(&self) -> FinalScratch {
         let bones = self.parts.bone_count;
-        FinalScratch { axis: vec![0.0; 4 * bones], bones: vec![[0.0; 16]; bones] }
+        FinalScratch {
+            axis: vec![0.0; 4 * bones],
+            bones: vec![[0.0; 16]; bones],
+        }
     }
 
     /// The influences of vertex `vertex`: bone and weight.
     fn influences(&self, vertex: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
         let range = self.parts.offsets[vertex] as usize..self.parts.offsets[vertex + 1] as usize;
-        let bones = self.parts.bones[range.clone()].iter().map(|bone| usize::from(*bone));
+        let bones = self.parts.bones[range.clone()]
+            .iter()
+            .map(|bone| usize::from(*bone));
         bones.zip(self.parts.weights[range].iter().copied())
     }
 
@@ -110,7 +148,10 @@ impl SkinnedLayer {
                     let [a, b, c, d] = [0, 1, 2, 3].map(|i| bones[4 * bone + i]);
                     a * x + b * y + c * z + d
                 };
-                *out = self.influences(vertex).map(|(bone, weight)| weight * moved(bone)).sum();
+                *out = self
+                    .influences(vertex)
+                    .map(|(bone, weight)| weight * moved(bone))
+                    .sum();
             }
         }
         matrix
@@ -123,7 +164,10 @@ impl SkinnedLayer {
         for (vertex, position) in positions.iter().enumerate() {
             let [x, y, z] = self.parts.rest[vertex];
             for (bone, weight) in self.influences(vertex) {
-                for (moment, entry) in moments[4 * bone..4 * bone + 4].iter_mut().zip([x, y, z, 1.0]) {
+                for (moment, entry) in moments[4 * bone..4 * bone + 4]
+                    .iter_mut()
+                    .zip([x, y, z, 1.0])
+                {
                     for axis in 0..3 {
                         moment[axis] += f64::from(weight * entry) * f64::from(position[axis]);
                     }
@@ -139,7 +183,11 @@ impl SkinnedLayer {
         let mut coefficients = vec![0.0; 3 * self.rank];
         for (j, row) in self.parts.expansion.chunks_exact(row_len).enumerate() {
             for axis in 0..3 {
-                let sum: f64 = row.iter().zip(&moments).map(|(e, m)| f64::from(*e) * m[axis]).sum();
+                let sum: f64 = row
+                    .iter()
+                    .zip(&moments)
+                    .map(|(e, m)| f64::from(*e) * m[axis])
+                    .sum();
                 coefficients[axis * self.rank + j] = (sum / self.vertex_count() as f64) as f32;
             }
         }
@@ -161,7 +209,13 @@ impl SkinnedLayer {
                 }
             }
         }
-        let SkinnedParts { rest, offsets, bones, weights, .. } = &self.parts;
+        let SkinnedParts {
+            rest,
+            offsets,
+            bones,
+            weights,
+            ..
+        } = &self.parts;
         let matrices = scratch.bones.as_slice();
         kernels::vectorised(
             #[inline(always)]

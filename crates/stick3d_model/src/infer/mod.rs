@@ -69,7 +69,10 @@ enum JointMap {
     /// The joints as linear functions of the coefficients: `[joint][rank]`.
     Linear { rows: Vec<f32>, rank: usize },
     /// The final layer is not linear: through the whole mesh.
-    Mesh { regressor: stick3d_figure::regressor::JointRegressor, positions: Vec<[f32; 3]> },
+    Mesh {
+        regressor: stick3d_figure::regressor::JointRegressor,
+        positions: Vec<[f32; 3]>,
+    },
 }
 
 impl Inference {
@@ -155,10 +158,15 @@ impl Inference {
     ///
     /// # Errors
     /// [`InferError::Length`], [`InferError::NotFinite`].
-    pub fn decode_positions(&mut self, latent: &[f32], positions: &mut [[f32; 3]]) -> Result<(), InferError> {
+    pub fn decode_positions(
+        &mut self,
+        latent: &[f32],
+        positions: &mut [[f32; 3]],
+    ) -> Result<(), InferError> {
         require("the positions", positions.len(), self.vertex_count())?;
         let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
-        self.final_layer.evaluate(coefficients, &mut self.final_scratch, positions);
+        self.final_layer
+            .evaluate(coefficients, &mut self.final_scratch, positions);
         Ok(())
     }
 
@@ -178,13 +186,20 @@ impl Inference {
             JointMap::Linear { rows, rank } => {
                 for (joint, row) in joints.iter_mut().zip(rows.chunks_exact(*rank)) {
                     let along = |axis: usize| -> f32 {
-                        row.iter().zip(&coefficients[axis * *rank..]).map(|(a, b)| a * b).sum()
+                        row.iter()
+                            .zip(&coefficients[axis * *rank..])
+                            .map(|(a, b)| a * b)
+                            .sum()
                     };
                     *joint = Vec3::new(along(0), along(1), along(2));
                 }
             }
-            JointMap::Mesh { regressor, positions } => {
-                self.final_layer.evaluate(coefficients, &mut self.final_scratch, positions);
+            JointMap::Mesh {
+                regressor,
+                positions,
+            } => {
+                self.final_layer
+                    .evaluate(coefficients, &mut self.final_scratch, positions);
                 regressor.write_joints(positions, joints);
             }
         }
@@ -206,8 +221,15 @@ fn coefficients<'a>(
 
 impl Perceptron {
     fn new(weights: &MlpWeights) -> Self {
-        let values = weights.layers.iter().map(|layer| vec![0.0; layer.output_len]).collect();
-        Self { weights: weights.clone(), values }
+        let values = weights
+            .layers
+            .iter()
+            .map(|layer| vec![0.0; layer.output_len])
+            .collect();
+        Self {
+            weights: weights.clone(),
+            values,
+        }
     }
 
     /// The output for `input`; empty when there is no layer.
@@ -231,14 +253,19 @@ impl JointMap {
         let regressor = model.regressor();
         let Some(matrix) = model.final_layer().matrix() else {
             let positions = vec![[0.0; 3]; model.vertex_count()];
-            return Self::Mesh { regressor: regressor.clone(), positions };
+            return Self::Mesh {
+                regressor: regressor.clone(),
+                positions,
+            };
         };
         let rank = model.final_layer().coefficient_len() / 3;
         let mut rows = vec![0.0; regressor.joint_count() * rank];
         for (out, row) in rows.chunks_exact_mut(rank).zip(&regressor.rows) {
             for (vertex, weight) in row {
                 let matrix_row = &matrix[*vertex as usize * rank..][..rank];
-                out.iter_mut().zip(matrix_row).for_each(|(out, entry)| *out += weight * entry);
+                out.iter_mut()
+                    .zip(matrix_row)
+                    .for_each(|(out, entry)| *out += weight * entry);
             }
         }
         Self::Linear { rows, rank }
@@ -246,7 +273,15 @@ impl JointMap {
 }
 
 fn require(what: &'static str, found: usize, expected: usize) -> Result<(), InferError> {
-    if found == expected { Ok(()) } else { Err(InferError::Length { what, expected, found }) }
+    if found == expected {
+        Ok(())
+    } else {
+        Err(InferError::Length {
+            what,
+            expected,
+            found,
+        })
+    }
 }
 
 fn require_finite(what: &'static str, numbers: &[f32]) -> Result<(), InferError> {

@@ -64,8 +64,13 @@ impl DecoderConfig {
         let width = self.head.last().copied().unwrap_or_default();
         let linear = LinearConfig::new(width, 3 * self.vertex_count).init(device);
         Decoder {
-            head: MlpConfig::new(self.head.clone()).with_relu_after_last(true).init(device),
-            final_layer: FinalModule::Tanh(TanhFinal { linear, extent_m: self.extent_m }),
+            head: MlpConfig::new(self.head.clone())
+                .with_relu_after_last(true)
+                .init(device),
+            final_layer: FinalModule::Tanh(TanhFinal {
+                linear,
+                extent_m: self.extent_m,
+            }),
         }
     }
 }
@@ -74,7 +79,10 @@ impl Decoder {
     /// The module with given weights.
     #[must_use]
     pub fn from_weights(head: &MlpWeights, final_layer: &FinalLayer, device: &Device) -> Self {
-        Self { head: Mlp::from_weights(head, device), final_layer: FinalModule::from_layer(final_layer, device) }
+        Self {
+            head: Mlp::from_weights(head, device),
+            final_layer: FinalModule::from_layer(final_layer, device),
+        }
     }
 
     /// The head alone.
@@ -98,7 +106,10 @@ impl FinalModule {
     pub fn from_layer(layer: &FinalLayer, device: &Device) -> Self {
         if let FinalLayer::Dense(dense) = layer {
             let linear = linear_from_weights(dense.linear(), device);
-            return Self::Tanh(TanhFinal { linear, extent_m: f64::from(dense.extent_m()) });
+            return Self::Tanh(TanhFinal {
+                linear,
+                extent_m: f64::from(dense.extent_m()),
+            });
         }
         let matrix = layer.matrix().unwrap_or_default();
         let shape = [layer.vertex_count(), layer.coefficient_len() / 3];
@@ -120,7 +131,9 @@ impl FinalModule {
             }
             Self::Linear(layer) => {
                 let [_, vertices] = layer.columns.dims();
-                let by_axis = coefficients.reshape([3 * batch, len / 3]).matmul(layer.columns.clone());
+                let by_axis = coefficients
+                    .reshape([3 * batch, len / 3])
+                    .matmul(layer.columns.clone());
                 by_axis.reshape([batch, 3, vertices]).swap_dims(1, 2)
             }
         }

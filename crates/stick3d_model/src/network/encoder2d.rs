@@ -24,7 +24,9 @@ impl Encoder2dConfig {
     /// Makes the network, initialised by the device's random numbers.
     #[must_use]
     pub fn init(&self, device: &Device) -> Encoder2d {
-        Encoder2d { mlp: MlpConfig::new(self.widths.clone()).init(device) }
+        Encoder2d {
+            mlp: MlpConfig::new(self.widths.clone()).init(device),
+        }
     }
 }
 
@@ -32,7 +34,9 @@ impl Encoder2d {
     /// The module with given weights.
     #[must_use]
     pub fn from_weights(weights: &MlpWeights, device: &Device) -> Self {
-        Self { mlp: Mlp::from_weights(weights, device) }
+        Self {
+            mlp: Mlp::from_weights(weights, device),
+        }
     }
 
     /// The weights on plain arrays; `None` when the device fails to hand them out.

@@ -29,7 +29,9 @@ impl Encoder3dConfig {
     /// Makes the network, initialised by the device's random numbers.
     #[must_use]
     pub fn init(&self, device: &Device) -> Encoder3d {
-        let trunk = MlpConfig::new(self.trunk.clone()).with_relu_after_last(true).init(device);
+        let trunk = MlpConfig::new(self.trunk.clone())
+            .with_relu_after_last(true)
+            .init(device);
         let width = self.trunk.last().copied().unwrap_or_default();
         Encoder3d {
             trunk,
@@ -68,6 +70,9 @@ impl Encoder3d {
     #[must_use]
     pub fn forward(&self, body: Tensor<2>) -> (Tensor<2>, Tensor<2>) {
         let hidden = self.trunk.forward(body);
-        (self.mean.forward(hidden.clone()), self.log_variance.forward(hidden))
+        (
+            self.mean.forward(hidden.clone()),
+            self.log_variance.forward(hidden),
+        )
     }
 }

@@ -28,8 +28,15 @@ impl MlpConfig {
     /// Makes the layers, initialised by the device's random numbers.
     #[must_use]
     pub fn init(&self, device: &Device) -> Mlp {
-        let layers = self.widths.windows(2).map(|w| LinearConfig::new(w[0], w[1]).init(device)).collect();
-        Mlp { layers, relu_after_last: self.relu_after_last }
+        let layers = self
+            .widths
+            .windows(2)
+            .map(|w| LinearConfig::new(w[0], w[1]).init(device))
+            .collect();
+        Mlp {
+            layers,
+            relu_after_last: self.relu_after_last,
+        }
     }
 }
 
@@ -37,15 +44,29 @@ impl Mlp {
     /// The module with given weights.
     #[must_use]
     pub fn from_weights(weights: &MlpWeights, device: &Device) -> Self {
-        let layers = weights.layers.iter().map(|layer| linear_from_weights(layer, device)).collect();
-        Self { layers, relu_after_last: weights.relu_after_last }
+        let layers = weights
+            .layers
+            .iter()
+            .map(|layer| linear_from_weights(layer, device))
+            .collect();
+        Self {
+            layers,
+            relu_after_last: weights.relu_after_last,
+        }
     }
 
     /// The weights on plain arrays; `None` when the device fails to hand them out.
     #[must_use]
     pub fn to_weights(&self) -> Option<MlpWeights> {
-        let layers = self.layers.iter().map(linear_to_weights).collect::<Option<Vec<_>>>()?;
-        Some(MlpWeights { layers, relu_after_last: self.relu_after_last })
+        let layers = self
+            .layers
+            .iter()
+            .map(linear_to_weights)
+            .collect::<Option<Vec<_>>>()?;
+        Some(MlpWeights {
+            layers,
+            relu_after_last: self.relu_after_last,
+        })
     }
 
     /// Runs the layers.
@@ -56,10 +77,17 @@ impl Mlp {
     #[must_use]
     pub fn forward(&self, input: Tensor<2>) -> Tensor<2> {
         let count = self.layers.len();
-        self.layers.iter().enumerate().fold(input, |value, (index, layer)| {
-            let value = layer.forward(value);
-            if index + 1 < count || self.relu_after_last { relu(value) } else { value }
-        })
+        self.layers
+            .iter()
+            .enumerate()
+            .fold(input, |value, (index, layer)| {
+                let value = layer.forward(value);
+                if index + 1 < count || self.relu_after_last {
+                    relu(value)
+                } else {
+                    value
+                }
+            })
     }
 }
 
@@ -69,7 +97,10 @@ pub fn linear_from_weights(weights: &LinearWeights, device: &Device) -> Linear {
     let shape = [weights.input_len, weights.output_len];
     Linear {
         weight: Param::from_data(TensorData::new(weights.weight.clone(), shape), device),
-        bias: Some(Param::from_data(TensorData::new(weights.bias.clone(), [weights.output_len]), device)),
+        bias: Some(Param::from_data(
+            TensorData::new(weights.bias.clone(), [weights.output_len]),
+            device,
+        )),
     }
 }
 
@@ -83,5 +114,10 @@ pub fn linear_to_weights(linear: &Linear) -> Option<LinearWeights> {
         None => vec![0.0; output_len],
     };
     let weight = numbers(linear.weight.val().try_into_data().ok()?)?;
-    Some(LinearWeights { input_len, output_len, weight, bias })
+    Some(LinearWeights {
+        input_len,
+        output_len,
+        weight,
+        bias,
+    })
 }

@@ -1,0 +1,58 @@
+//! A frame allocates nothing: sketch to latent, latent to mesh and normals, latent to joints.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use glam::Vec3;
+use stick3d_figure::sketch::Sketch;
+use stick3d_model::{Inference, Model};
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+#[allow(
+    unsafe_code,
+    reason = "the trait of allocators is unsafe; this one hands on to the system's"
+)]
+// SAFETY: every call is handed on to `System` unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller keeps the contract of `GlobalAlloc::alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: `pointer` came from `System` with this layout.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+#[test]
+fn a_frame_allocates_nothing() {
+    let model = Model::from_bytes(include_bytes!("../../../assets/models/human.stick3d")).unwrap();
+    let mut inference = Inference::new(&model).unwrap();
+    let sketch = Sketch::template(model.figure());
+    let mut latent = vec![0.0; inference.latent_len()];
+    let mut positions = vec![[0.0; 3]; inference.vertex_count()];
+    let mut normals = positions.clone();
+    let mut joints = vec![Vec3::ZERO; model.figure().joint_count()];
+
+    let before = ALLOCATIONS.with(Cell::get);
+    for _ in 0..3 {
+        inference.encode(&sketch, &mut latent).unwrap();
+        inference
+            .decode(&latent, &mut positions, &mut normals)
+            .unwrap();
+        inference.joints(&latent, &mut joints).unwrap();
+    }
+    assert_eq!(ALLOCATIONS.with(Cell::get) - before, 0);
+    assert!(before > 0, "the counter counts");
+    assert!(positions.iter().any(|p| p[1] > 0.3), "he stands");
+}
