@@ -217,3 +217,97 @@ where
     }
     sums.into_iter().collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use stick3d_figure::TriangleMesh;
+
+    use super::*;
+
+    /// A cube without its top, one bone.
+    fn open_cube() -> Surface {
+        let corner = |v: u32| {
+            DVec3::new(
+                f64::from(v & 1),
+                f64::from(v >> 1 & 1),
+                f64::from(v >> 2 & 1),
+            )
+        };
+        let quads = [
+            [0, 1, 5, 4],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        Surface::from_quads(
+            (0..8).map(corner).collect(),
+            &quads,
+            vec![vec![(0, 1.0)]; 8],
+        )
+    }
+
+    fn mesh(surface: &Surface) -> TriangleMesh {
+        TriangleMesh {
+            positions: surface
+                .positions
+                .iter()
+                .map(|point| point.as_vec3())
+                .collect(),
+            triangles: surface.triangles.clone(),
+        }
+    }
+
+    #[test]
+    fn a_fan_closes_a_hole_with_the_right_winding() {
+        for rim in [[2, 3, 7, 6], [6, 7, 3, 2]] {
+            let mut cube = open_cube();
+            assert!(!mesh(&cube).topology().closed);
+            cube.fan_shut(&rim, DVec3::new(0.5, 1.0, 0.5));
+            let report = mesh(&cube).topology();
+            assert!(report.closed && report.consistently_wound, "{report:?}");
+            assert!((mesh(&cube).volume() - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn splits_keep_the_surface_closed_and_the_weights_whole() {
+        let mut cube = open_cube();
+        let top = cube.fan_shut(&[2, 3, 7, 6], DVec3::new(0.5, 1.0, 0.5));
+        cube.influences[top as usize] = vec![(1, 1.0)];
+        let middle = cube.split_at(top, 2, 0.25);
+        assert_eq!(cube.influences[middle as usize], [(0, 0.25), (1, 0.75)]);
+        cube.split_longest(30);
+        assert_eq!(cube.positions.len(), 8 + 1 + 1 + 30);
+        let report = mesh(&cube).topology();
+        assert!(report.closed && report.consistently_wound, "{report:?}");
+        assert_eq!(report.euler_characteristic, 2);
+        for list in &cube.influences {
+            let sum: f64 = list.iter().map(|&(_, weight)| weight).sum();
+            assert!((sum - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn pinching_pulls_both_sides_to_the_line_and_keeps_the_rest() {
+        let mut cube = open_cube();
+        cube.pinch(|point| point.x - 0.5, 0.01);
+        for point in &cube.positions {
+            // The line is half an edge away, which is less than the furthest that a vertex may go.
+            assert!(((point.x - 0.5).abs() - 0.01).abs() < 1e-9, "{point}");
+        }
+        let mut other = open_cube();
+        other.pinch(|point| point.x - 2.0, 0.01);
+        assert_eq!(other.positions, open_cube().positions);
+    }
+
+    #[test]
+    fn smoothing_moves_only_what_the_mask_names() {
+        let mut cube = open_cube();
+        let mut mask = vec![0.0; 8];
+        mask[7] = 1.0;
+        cube.smooth(&mask, 1);
+        assert_eq!(cube.positions[..7], open_cube().positions[..7]);
+        assert!(cube.positions[7] != open_cube().positions[7]);
+    }
+}

@@ -9,8 +9,8 @@ pub enum RigError {
     /// The bytes are not a glTF binary that the reader accepts.
     #[error("the rig is not a valid binary glTF (.glb): {0}; export it again as glTF 2.0 binary")]
     Gltf(#[from] gltf::Error),
-    /// The file could not be turned into JSON.
-    #[error("the rig's glTF description could not be written: {0}")]
+    /// The file's description is not the JSON that it should be, or could not be written.
+    #[error("the rig's glTF description is not valid: {0}")]
     Json(#[from] serde_json::Error),
     /// The file lacks a part that a rig needs.
     #[error("the rig has no {what}; export the mesh together with its armature")]

@@ -9,10 +9,13 @@
 
 mod centers;
 mod error;
+mod open;
 mod read;
 mod regressor;
 mod skeleton;
 mod skinning;
+#[cfg(test)]
+mod tests;
 mod write;
 
 pub use error::RigError;

@@ -7,6 +7,7 @@ use gltf::mesh::Mode;
 use gltf::{Document, Node, Primitive, Skin};
 use stick3d_figure::mesh::TriangleMesh;
 
+use super::open::open;
 use super::{Bone, MAX_INFLUENCES, Rig, RigError, Skeleton};
 
 impl Rig {
@@ -138,53 +139,6 @@ impl Rig {
 
 fn missing(what: &str) -> RigError {
     RigError::Missing { what: what.into() }
-}
-
-/// Parses the file and makes sure that every accessor lies inside it, which the reader takes for granted.
-fn open(bytes: &[u8]) -> Result<(Document, Vec<u8>), RigError> {
-    let declared = bytes
-        .get(8..12)
-        .and_then(|b| b.try_into().ok())
-        .map_or(0, u32::from_le_bytes);
-    if !bytes.starts_with(b"glTF") || declared < 12 || declared as usize > bytes.len() {
-        return Err(RigError::Inconsistent {
-            what: "it is not a whole binary glTF: wrong first bytes, or cut short".into(),
-        });
-    }
-    let gltf::Gltf { document, blob } = gltf::Gltf::from_slice(bytes)?;
-    let blob = blob.unwrap_or_default();
-    let embedded = |buffer: gltf::Buffer<'_>| matches!(buffer.source(), gltf::buffer::Source::Bin);
-    if !document.buffers().all(embedded) || document.buffers().count() > 1 {
-        return Err(RigError::Unsupported {
-            what: "buffers outside the .glb".into(),
-        });
-    }
-    for accessor in document.accessors() {
-        let Some(view) = accessor.view() else {
-            continue;
-        };
-        let size = accessor.size();
-        let stride = view.stride().unwrap_or(size);
-        let inside = accessor
-            .count()
-            .checked_sub(1)
-            .and_then(|last| last.checked_mul(stride))
-            .and_then(|start| start.checked_add(accessor.offset())?.checked_add(size))
-            .is_some_and(|end| end <= view.length())
-            && view
-                .offset()
-                .checked_add(view.length())
-                .is_some_and(|end| end <= blob.len());
-        if !inside || accessor.sparse().is_some() {
-            return Err(RigError::Inconsistent {
-                what: format!(
-                    "accessor {} is sparse or reaches past the data",
-                    accessor.index()
-                ),
-            });
-        }
-    }
-    Ok((document, blob))
 }
 
 /// The model-space matrix of every node.

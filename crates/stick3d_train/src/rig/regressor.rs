@@ -1,7 +1,7 @@
 //! Finding a figure's joints on the surface of its rig.
 //!
 //! A joint must be readable from a mesh alone, so it is a weighted mean of vertices. The weights are
-//! fitted: over a few bent poses of the joint's own bones the mean shall stay at the bone's head,
+//! fitted: over a few bent poses of the joint's own bones and those that hang on them the mean shall stay at the bone's head,
 //! at rest it shall hit it exactly, and the weights shall stay near a plain average, so that noise in
 //! the vertices is averaged out and not amplified.
 
@@ -181,7 +181,13 @@ fn bent_offsets(ring: &[u32], bones: &[usize], rig: &Rig) -> Vec<Vec<DVec3>> {
     let skeleton = &rig.skeleton;
     let mut bent = Vec::new();
     let mut posed = Vec::new();
-    for &bone in bones {
+    let hangs_on_them = |bone: usize| {
+        bones.contains(&bone)
+            || skeleton.bones[bone]
+                .parent
+                .is_some_and(|parent| bones.contains(&parent))
+    };
+    for bone in (0..skeleton.bones.len()).filter(|&bone| hangs_on_them(bone)) {
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
             for degrees in BENDS_DEG {
                 let mut pose = Pose::rest(skeleton.bones.len());
