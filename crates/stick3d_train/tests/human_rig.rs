@@ -22,7 +22,7 @@ fn rig() -> Rig {
 }
 
 fn head(rig: &Rig, bone: &str) -> Vec3 {
-    rig.skeleton.bones[rig.skeleton.bone_index(bone).unwrap()].head
+    rig.skeleton.bones[rig.skeleton.bone_index(bone).expect("a bone of the rig")].head
 }
 
 /// The share of a vertex that follows bones whose names start so.
@@ -42,7 +42,7 @@ fn share(rig: &Rig, vertex: usize, starts: &[&str]) -> f32 {
 fn bent(rig: &Rig, turns: &[(&str, Vec3, f32)]) -> Pose {
     let mut pose = Pose::rest(rig.skeleton.bones.len());
     for &(bone, axis, degrees) in turns {
-        let bone = rig.skeleton.bone_index(bone).unwrap();
+        let bone = rig.skeleton.bone_index(bone).expect("a bone of the rig");
         pose.rotations[bone] = Quat::from_axis_angle(axis.normalize(), degrees.to_radians());
     }
     pose

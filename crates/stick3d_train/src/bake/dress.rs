@@ -42,7 +42,8 @@ const LASH: [u8; 4] = srgb_hex(0x5c3f32);
 pub(super) fn dress(surface: &mut Surface, face: &Face) -> Vec<[u8; 4]> {
     lay_cloth(surface);
     grow_hair(surface);
-    for field in [hairline, collar, cuff, hem, yoke, brow] {
+    // The second pass brings those to the line that were more than a step away.
+    for field in [hairline, collar, cuff, hem, yoke, brow].repeat(2) {
         surface.pinch(field, SEAM_M);
     }
     let mut colors: Vec<[u8; 4]> = surface
@@ -52,6 +53,11 @@ pub(super) fn dress(surface: &mut Surface, face: &Face) -> Vec<[u8; 4]> {
         .collect();
     paint_face(surface, face, &mut colors);
     colors
+}
+
+/// How much longer an edge counts here when the longest are split: the scalp is coarse and round.
+pub(super) fn detail(point: DVec3) -> f64 {
+    if hairline(point) > 0.0 { 1.7 } else { 1.0 }
 }
 
 /// What is worn at a place.

@@ -92,7 +92,7 @@ pub fn build(path: &Path) -> Result<Rig, BakeError> {
             eyes::close_eye(&mut surface, left, &ball("l")?),
         ],
     };
-    surface.split_longest(VERTICES - surface.positions.len());
+    surface.split_longest(VERTICES - surface.positions.len(), dress::detail);
     let limber = limbs_and_trunk(&surface, &skeleton);
     surface.smooth_influences(&limber, WEIGHT_STEPS);
     let colors = dress::dress(&mut surface, &face);

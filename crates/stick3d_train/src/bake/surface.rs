@@ -83,11 +83,13 @@ impl Surface {
     }
 
     /// Splits the longest edge, `times` times over, the new vertices following the surface's curvature.
-    pub(super) fn split_longest(&mut self, times: usize) {
+    /// An edge's length counts by `factor` at its middle.
+    pub(super) fn split_longest(&mut self, times: usize, factor: impl Fn(DVec3) -> f64) {
         for _ in 0..times {
             let normals = self.normals();
             let length = |&(a, b): &(u32, u32)| {
-                self.positions[a as usize].distance_squared(self.positions[b as usize])
+                let (from, to) = (self.positions[a as usize], self.positions[b as usize]);
+                from.distance(to) * factor((from + to) / 2.0)
             };
             let edges = self.directed_edges().filter(|(a, b)| a < b);
             let longest = edges.max_by(|left, right| {
@@ -277,7 +279,7 @@ mod tests {
         cube.influences[top as usize] = vec![(1, 1.0)];
         let middle = cube.split_at(top, 2, 0.25);
         assert_eq!(cube.influences[middle as usize], [(0, 0.25), (1, 0.75)]);
-        cube.split_longest(30);
+        cube.split_longest(30, |_| 1.0);
         assert_eq!(cube.positions.len(), 8 + 1 + 1 + 30);
         let report = mesh(&cube).topology();
         assert!(report.closed && report.consistently_wound, "{report:?}");
