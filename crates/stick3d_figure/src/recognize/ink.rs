@@ -7,7 +7,7 @@ use glam::{DVec2, Vec2};
 use crate::stroke::Stroke;
 
 /// About how many samples a drawing is reduced to: a head of a human drawn in one line still gets six.
-const SAMPLES: usize = 140;
+const SAMPLES: usize = 120;
 /// Nobody draws a figure with more strokes; it bounds the work.
 pub(super) const MAX_STROKES: usize = 256;
 /// Strokes smaller than this part of the drawing's diagonal are slips of the pen.

@@ -19,7 +19,7 @@ pub(super) struct Effort {
 impl Effort {
     /// For drawings as people make them.
     pub(super) const USUAL: Self = Self {
-        beam: 24,
+        beam: 18,
         beam_cost: 20.0,
         max_straightness_cost: 25.0,
     };
