@@ -1,1 +1,99 @@
 //! A Bevy plugin that turns drawn stick figures into posed 3D bodies.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use bevy_stick3d::prelude::*;
+//!
+//! fn main() {
+//!     App::new()
+//!         .add_plugins((DefaultPlugins, Stick3dPlugin))
+//!         .add_systems(Startup, |mut commands: Commands| {
+//!             let sketch = StickSketch::new(Figure::human().template.clone());
+//!             commands.spawn((StickFigure::human(), sketch));
+//!         })
+//!         .run();
+//! }
+//! ```
+//!
+//! # Authored and generated
+//! You write [`StickFigure`] (which model), [`StickSketch`] (the drawing) or [`Latent`] (the pose as the
+//! networks know it). The plugin writes [`StreamedBody`], [`FigureStatus`], and the entity's `Mesh3d`.
+//! A change of the first becomes a change of the second in the same frame; see [`Stick3dSystems`].
+//!
+//! # Plugins
+//! [`Stick3dPlugin`] is nothing but these, and each can be left out or replaced:
+//!
+//! | plugin | duty |
+//! | --- | --- |
+//! | [`Stick3dSchedulePlugin`] | orders [`Stick3dSystems`] |
+//! | [`Stick3dModelPlugin`] | models as assets; the embedded human |
+//! | [`Stick3dSketchInputPlugin`] | pointer input over a [`SketchCanvas`] becomes strokes and sketches |
+//! | [`Stick3dInferencePlugin`] | sketches become latents |
+//! | [`Stick3dStreamPlugin`] | latents become meshes |
+//! | [`Stick3dMaterialPlugin`] | figures without a material get one |
+//!
+//! # Features
+//! | feature | default | what |
+//! | --- | --- | --- |
+//! | `human` | yes | embeds the trained model of the man |
+//! | `editor` | no | the pose editor, on `bevy_egui` |
+//!
+//! # When something is wrong
+//! Nothing panics: [`Stick3dStatus`] says what is wrong with models, [`FigureStatus`] what is wrong with a figure.
+
+#[cfg(feature = "editor")]
+pub mod editor;
+mod figure;
+mod inference;
+mod material;
+mod model_asset;
+mod schedule;
+pub mod sketch_input;
+mod status;
+mod stream;
+
+use bevy::app::{PluginGroup, PluginGroupBuilder};
+
+pub use figure::{FigureStatus, Grounded, Latent, StickFigure, StickSketch};
+pub use inference::{ReadyModel, StickInference, Stick3dInferencePlugin};
+pub use material::{DefaultFigureMaterial, OwnMaterial, Stick3dMaterialPlugin};
+#[cfg(feature = "human")]
+pub use model_asset::HUMAN_MODEL;
+pub use model_asset::{Stick3dModelPlugin, StickModel, StickModelLoader, StickModelLoaderError};
+pub use schedule::{Stick3dSchedulePlugin, Stick3dSystems};
+pub use sketch_input::{SketchCanvas, Stick3dSketchInputPlugin};
+pub use status::Stick3dStatus;
+pub use stick3d_figure as figure_data;
+pub use stream::{Stick3dStreamPlugin, StreamError, StreamedBody};
+
+/// What most apps need.
+pub mod prelude {
+    pub use stick3d_figure::{Figure, Sketch};
+
+    pub use crate::sketch_input::{
+        CanvasArea, SketchCanvas, SketchChanged, SketchCompleted, SketchDrawing, StrokeFinished,
+        StrokeUndone,
+    };
+    pub use crate::{
+        FigureStatus, Grounded, Latent, Stick3dPlugin, Stick3dStatus, Stick3dSystems, StickFigure,
+        StickModel, StickSketch,
+    };
+}
+
+/// Everything of the plugin. See the crate's page for its parts.
+///
+/// To leave one out: `Stick3dPlugin.build().disable::<Stick3dMaterialPlugin>()`.
+#[derive(Debug, Default, Clone, Copy)]
+pub struct Stick3dPlugin;
+
+impl PluginGroup for Stick3dPlugin {
+    fn build(self) -> PluginGroupBuilder {
+        PluginGroupBuilder::start::<Self>()
+            .add(Stick3dSchedulePlugin)
+            .add(Stick3dModelPlugin)
+            .add(Stick3dSketchInputPlugin)
+            .add(Stick3dInferencePlugin)
+            .add(Stick3dStreamPlugin)
+            .add(Stick3dMaterialPlugin)
+    }
+}

@@ -1,0 +1,305 @@
+//! Painting the canvas: paper, the guide, the ink, the joints.
+
+use bevy::math::Vec2;
+use bevy_egui::egui::{
+    Align2, Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2,
+};
+use stick3d_figure::{Figure, Side};
+
+use super::theme::{self, faded, side_color};
+use super::words::Words;
+use crate::sketch_input::{SketchDrawing, screen_from_canvas};
+
+/// Space between the card's edge and its words, points.
+const MARGIN: f32 = 24.0;
+
+/// Turns canvas units into egui points.
+#[derive(Clone, Copy)]
+struct ToScreen(bevy::math::Rect);
+
+impl ToScreen {
+    fn new(rect: Rect) -> Self {
+        Self(bevy::math::Rect::new(
+            rect.min.x, rect.min.y, rect.max.x, rect.max.y,
+        ))
+    }
+
+    fn point(self, canvas: Vec2) -> Pos2 {
+        let point = screen_from_canvas(self.0, canvas);
+        pos2(point.x, point.y)
+    }
+
+    /// Points per 1/700 of the canvas: lines and joints grow with it, a little.
+    fn size(self) -> f32 {
+        (self.0.size().min_element() / 700.0).clamp(0.7, 1.6)
+    }
+}
+
+/// Paints the whole canvas. `pulse` goes from 0 to 1 and back.
+pub(super) fn paint(painter: &Painter, rect: Rect, drawing: &SketchDrawing, words: &Words, pulse: f32) {
+    let to_screen = ToScreen::new(rect);
+    paper(painter, rect);
+    match drawing.sketch() {
+        Some(sketch) => {
+            ink(painter, to_screen, drawing, 0.10);
+            finished(painter, to_screen, drawing, sketch.points());
+        }
+        None => {
+            guide(painter, to_screen, drawing);
+            recognised(painter, to_screen, drawing);
+            ink(painter, to_screen, drawing, 0.92);
+            next_joint(painter, to_screen, drawing, pulse);
+        }
+    }
+    if let Some(stroke) = drawing.pen_stroke() {
+        let positions = stroke.positions().map(|p| to_screen.point(p)).collect();
+        painter.line(positions, Stroke::new(3.6 * to_screen.size(), theme::INK));
+    }
+    header(painter, rect, drawing, words);
+}
+
+fn paper(painter: &Painter, rect: Rect) {
+    let corners = CornerRadius::from(theme::CARD_RADIUS);
+    painter.add(theme::CARD_SHADOW.as_shape(rect, corners));
+    painter.rect_filled(rect, corners, theme::PAPER);
+    let spacing = 28.0;
+    let inner = rect.shrink(spacing * 0.5);
+    let (columns, rows) = (
+        (inner.width() / spacing) as usize,
+        (inner.height() / spacing) as usize,
+    );
+    for column in 0..=columns {
+        for row in 0..=rows {
+            let dot = inner.min + vec2(column as f32, row as f32) * spacing;
+            painter.circle_filled(dot, 1.0, theme::PAPER_DOT);
+        }
+    }
+    painter.rect_stroke(
+        rect,
+        corners,
+        Stroke::new(1.0, theme::HAIRLINE),
+        StrokeKind::Inside,
+    );
+}
+
+fn header(painter: &Painter, rect: Rect, drawing: &SketchDrawing, words: &Words) {
+    let left = rect.min + vec2(MARGIN, MARGIN - 4.0);
+    let headline = painter.text(
+        left,
+        Align2::LEFT_TOP,
+        capitalised(&words.headline),
+        theme::headline(),
+        theme::INK,
+    );
+    let hint = painter.text(
+        headline.left_bottom() + vec2(0.0, 4.0),
+        Align2::LEFT_TOP,
+        &words.hint,
+        theme::body(),
+        theme::INK_SOFT,
+    );
+    if drawing.sketch().is_some() {
+        return;
+    }
+    let width = (rect.width() - 2.0 * MARGIN).max(0.0);
+    let rail = Rect::from_min_size(hint.left_bottom() + vec2(0.0, 12.0), vec2(width, 4.0));
+    painter.rect_filled(rail, CornerRadius::same(2), theme::HAIRLINE);
+    let mut done = rail;
+    done.set_width(width * drawing.live_progress().fraction);
+    painter.rect_filled(done, CornerRadius::same(2), theme::ACCENT);
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
+}
+
+/// The side a bone is on: that of its outer end.
+fn bone_side(figure: &Figure, bone: [usize; 2]) -> Side {
+    match figure.joints[bone[1]].side {
+        Side::Center => figure.joints[bone[0]].side,
+        side => side,
+    }
+}
+
+/// A line with round ends.
+fn round_line(painter: &Painter, ends: [Pos2; 2], width: f32, color: Color32) {
+    painter.line_segment(ends, Stroke::new(width, color));
+    if color.is_opaque() {
+        for end in ends {
+            painter.circle_filled(end, width / 2.0, color);
+        }
+    }
+}
+
+/// The faint figure: where the rest of the path goes.
+fn guide(painter: &Painter, to_screen: ToScreen, drawing: &SketchDrawing) {
+    let figure = drawing.figure();
+    let points = drawing.guide();
+    let placed = &drawing.live_progress().placed;
+    let size = to_screen.size();
+    head(painter, to_screen, figure, &points, faded(theme::INK, 0.05));
+    for &[a, b] in &figure.bones {
+        if placed[a].is_some() && placed[b].is_some() {
+            continue;
+        }
+        let color = mixed_with_paper(side_color(bone_side(figure, [a, b])), 0.20);
+        let ends = [points[a], points[b]].map(|p| to_screen.point(p));
+        round_line(painter, ends, 9.0 * size, color);
+    }
+    for (joint, point) in points.iter().enumerate() {
+        if placed[joint].is_none() {
+            let color = mixed_with_paper(side_color(figure.joints[joint].side), 0.38);
+            painter.circle_filled(to_screen.point(*point), 7.5 * size, color);
+        }
+    }
+    side_letters(painter, to_screen, figure, &points, 0.55);
+}
+
+/// A head round the forehead of a figure that has a neck.
+fn head(painter: &Painter, to_screen: ToScreen, figure: &Figure, points: &[Vec2], color: Color32) {
+    let (Ok(forehead), Ok(neck)) = (figure.joint_index("forehead"), figure.joint_index("neck"))
+    else {
+        return;
+    };
+    let (top, bottom) = (points[forehead], points[neck]);
+    let centre = to_screen.point(top.lerp(bottom, 0.22));
+    let radius = to_screen.point(top).distance(to_screen.point(bottom)) * 0.56;
+    painter.circle_filled(centre, radius, color);
+}
+
+/// The colour with which an opaque line looks like a translucent one on paper.
+fn mixed_with_paper(color: Color32, share: f32) -> Color32 {
+    theme::PAPER.lerp_to_gamma(color, share)
+}
+
+/// What the strokes were read as: a marker over the ink.
+fn recognised(painter: &Painter, to_screen: ToScreen, drawing: &SketchDrawing) {
+    let figure = drawing.figure();
+    let placed = &drawing.live_progress().placed;
+    let size = to_screen.size();
+    for &[a, b] in &figure.bones {
+        if let (Some(a_point), Some(b_point)) = (placed[a], placed[b]) {
+            let color = mixed_with_paper(side_color(bone_side(figure, [a, b])), 0.42);
+            let ends = [a_point, b_point].map(|p| to_screen.point(p));
+            round_line(painter, ends, 9.0 * size, color);
+        }
+    }
+    for (joint, point) in placed.iter().enumerate() {
+        if let Some(point) = point {
+            handle(painter, to_screen.point(*point), figure.joints[joint].side, 6.0 * size);
+        }
+    }
+}
+
+fn ink(painter: &Painter, to_screen: ToScreen, drawing: &SketchDrawing, opacity: f32) {
+    let color = mixed_with_paper(theme::INK, opacity);
+    for stroke in drawing.strokes() {
+        let positions = stroke.positions().map(|p| to_screen.point(p)).collect();
+        painter.line(positions, Stroke::new(2.6 * to_screen.size(), color));
+    }
+}
+
+/// The bone to draw next: a dashed line to a joint that pulses.
+fn next_joint(painter: &Painter, to_screen: ToScreen, drawing: &SketchDrawing, pulse: f32) {
+    let Some((from, to)) = drawing.next_bone() else {
+        return;
+    };
+    let figure = drawing.figure();
+    let points = drawing.guide();
+    let size = to_screen.size();
+    // Before the first stroke the first joint is where to begin, and its bone the one to draw.
+    let (start, goal) = match from {
+        Some(from) => (from, to),
+        None => (to, figure.path.get(1).copied().unwrap_or(to)),
+    };
+    let color = side_color(figure.joints[goal].side);
+    let [start, goal] = [start, goal].map(|joint| to_screen.point(points[joint]));
+    painter.extend(Shape::dashed_line(
+        &[start, goal],
+        Stroke::new(2.5 * size, color),
+        9.0 * size,
+        7.0 * size,
+    ));
+    if from.is_none() {
+        painter.circle_filled(start, 6.0 * size, color);
+    }
+    painter.circle_filled(
+        goal,
+        (11.0 + 13.0 * pulse) * size,
+        faded(color, 0.24 * (1.0 - pulse) + 0.08),
+    );
+    painter.circle_filled(goal, 8.0 * size, color);
+    painter.circle_filled(goal, 3.2 * size, theme::PAPER);
+}
+
+/// The sketch with its joints to drag.
+fn finished(painter: &Painter, to_screen: ToScreen, drawing: &SketchDrawing, points: &[Vec2]) {
+    let figure = drawing.figure();
+    let size = to_screen.size();
+    head(painter, to_screen, figure, points, mixed_with_paper(theme::INK, 0.08));
+    for &[a, b] in &figure.bones {
+        let color = side_color(bone_side(figure, [a, b]));
+        let ends = [points[a], points[b]].map(|p| to_screen.point(p));
+        round_line(painter, ends, 5.0 * size, color);
+    }
+    side_letters(painter, to_screen, figure, points, 1.0);
+    let held = drawing.dragged().or(drawing.hovered());
+    for (joint, point) in points.iter().enumerate() {
+        let (at, side) = (to_screen.point(*point), figure.joints[joint].side);
+        if held == Some(joint) {
+            painter.circle_filled(at, 20.0 * size, faded(side_color(side), 0.20));
+            handle(painter, at, side, 10.5 * size);
+        } else {
+            handle(painter, at, side, 8.0 * size);
+        }
+    }
+}
+
+/// A joint: filled on the right and in the middle, open on the left.
+fn handle(painter: &Painter, at: Pos2, side: Side, radius: f32) {
+    let color = side_color(side);
+    painter.circle_filled(at, radius + 2.0, theme::PAPER);
+    match side {
+        Side::Left => {
+            painter.circle(at, radius - 1.5, theme::PAPER, Stroke::new(3.0, color));
+        }
+        Side::Right | Side::Center => {
+            painter.circle_filled(at, radius, color);
+        }
+    }
+}
+
+/// R and L beside the ends of the limbs.
+fn side_letters(
+    painter: &Painter,
+    to_screen: ToScreen,
+    figure: &Figure,
+    points: &[Vec2],
+    opacity: f32,
+) {
+    for (joint, point) in points.iter().enumerate() {
+        let side = figure.joints[joint].side;
+        let mut bones = figure.bones.iter().filter(|bone| bone.contains(&joint));
+        let (Some(bone), None) = (bones.next(), bones.next()) else {
+            continue;
+        };
+        let letter = match side {
+            Side::Center => continue,
+            Side::Right => "R",
+            Side::Left => "L",
+        };
+        let inner = points[if bone[0] == joint { bone[1] } else { bone[0] }];
+        let end = to_screen.point(*point);
+        let outward = (end - to_screen.point(inner)).normalized();
+        painter.text(
+            end + outward * 24.0 * to_screen.size(),
+            Align2::CENTER_CENTER,
+            letter,
+            theme::body(),
+            mixed_with_paper(side_color(side), opacity),
+        );
+    }
+}

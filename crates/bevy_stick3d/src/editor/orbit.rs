@@ -1,0 +1,192 @@
+//! The camera that goes round the figure: pure arithmetic.
+
+use bevy::math::{Mat3, Quat, Vec2, Vec3};
+use bevy::transform::components::Transform;
+
+/// The vertical opening of the camera. A long lens flatters a body.
+pub(super) const FOV_Y_RAD: f32 = 0.48;
+/// How much of the view the framed box may fill.
+const FILL: f32 = 0.80;
+const PITCH_RANGE_RAD: [f32; 2] = [-0.08, 1.45];
+const ZOOM_RANGE: [f32; 2] = [0.25, 3.0];
+
+/// Where the camera looks from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Orbit {
+    /// Turn about the vertical; 0 looks the figure in the face, positive from its left.
+    pub(super) yaw_rad: f32,
+    /// Height above the horizon.
+    pub(super) pitch_rad: f32,
+    /// Distance as a share of the one that frames the figure.
+    pub(super) zoom: f32,
+}
+
+impl Default for Orbit {
+    /// Three-quarter view, a little above the eyes.
+    fn default() -> Self {
+        Self {
+            yaw_rad: 0.45,
+            pitch_rad: 0.16,
+            zoom: 1.0,
+        }
+    }
+}
+
+impl Orbit {
+    /// Turns with a drag of so many points; half a turn across `size_px`.
+    pub(super) fn drag(&mut self, delta_px: Vec2, size_px: Vec2) {
+        if size_px.min_element() < 1.0 || !delta_px.is_finite() {
+            return;
+        }
+        let turn = delta_px / size_px.min_element() * std::f32::consts::PI;
+        self.yaw_rad =
+            (self.yaw_rad - turn.x + std::f32::consts::PI).rem_euclid(std::f32::consts::TAU)
+                - std::f32::consts::PI;
+        self.pitch_rad =
+            (self.pitch_rad + turn.y).clamp(PITCH_RANGE_RAD[0], PITCH_RANGE_RAD[1]);
+    }
+
+    /// Comes nearer for positive `points` of scrolling.
+    pub(super) fn scroll(&mut self, points: f32) {
+        if points.is_finite() {
+            self.zoom = (self.zoom * (-points * 0.0022).exp()).clamp(ZOOM_RANGE[0], ZOOM_RANGE[1]);
+        }
+    }
+
+    fn rotation(&self) -> Quat {
+        Quat::from_rotation_y(self.yaw_rad) * Quat::from_rotation_x(-self.pitch_rad)
+    }
+}
+
+/// What the camera keeps in view: a box, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Framing {
+    /// The smallest coordinates.
+    pub(super) low: Vec3,
+    /// The largest coordinates.
+    pub(super) high: Vec3,
+}
+
+impl Default for Framing {
+    /// A standing man.
+    fn default() -> Self {
+        Self {
+            low: Vec3::new(-0.7, 0.0, -0.3),
+            high: Vec3::new(0.7, 1.8, 0.3),
+        }
+    }
+}
+
+impl Framing {
+    /// The box, and never less than a sitting child: small bodies should not fill the screen.
+    pub(super) fn around(low: Vec3, high: Vec3) -> Self {
+        let centre = (low + high) / 2.0;
+        let half = ((high - low) / 2.0).max(Vec3::new(0.45, 0.45, 0.2));
+        Self {
+            low: centre - half,
+            high: centre + half,
+        }
+    }
+
+    /// Moves a share of the way toward `goal`.
+    pub(super) fn approach(&mut self, goal: &Self, share: f32) {
+        self.low = self.low.lerp(goal.low, share);
+        self.high = self.high.lerp(goal.high, share);
+    }
+
+    fn centre(&self) -> Vec3 {
+        (self.low + self.high) / 2.0
+    }
+
+    fn corners(&self) -> impl Iterator<Item = Vec3> {
+        let (low, high) = (self.low, self.high);
+        (0..8).map(move |i| {
+            Vec3::new(
+                if i & 1 == 0 { low.x } else { high.x },
+                if i & 2 == 0 { low.y } else { high.y },
+                if i & 4 == 0 { low.z } else { high.z },
+            )
+        })
+    }
+
+    /// The least distance at which all corners are in the middle of a view of this width by height.
+    fn distance(&self, rotation: Quat, aspect: f32) -> f32 {
+        let view_from_world = Mat3::from_quat(rotation).transpose();
+        let tan_y = (FOV_Y_RAD / 2.0).tan() * FILL;
+        let tan_x = tan_y * aspect.max(0.05);
+        self.corners()
+            .map(|corner| view_from_world * (corner - self.centre()))
+            .map(|p| (p.x.abs() / tan_x).max(p.y.abs() / tan_y) + p.z)
+            .fold(0.1, f32::max)
+    }
+}
+
+/// Where the camera is for an orbit, a box to frame and a view of `aspect` = width / height.
+pub(super) fn camera_transform(orbit: &Orbit, framing: &Framing, aspect: f32) -> Transform {
+    let rotation = orbit.rotation();
+    let distance = framing.distance(rotation, aspect) * orbit.zoom;
+    let eye = framing.centre() + rotation * Vec3::Z * distance;
+    Transform::from_translation(eye.with_y(eye.y.max(0.05))).with_rotation(rotation)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where a point is on the view, -1..1 both ways.
+    fn on_view(point: Vec3, camera: &Transform, aspect: f32) -> Vec2 {
+        let p = camera.compute_affine().inverse().transform_point3(point);
+        assert!(p.z < 0.0, "behind the camera");
+        let tan = (FOV_Y_RAD / 2.0).tan();
+        Vec2::new(p.x / (-p.z * tan * aspect), p.y / (-p.z * tan))
+    }
+
+    #[test]
+    fn every_corner_is_framed_from_everywhere() {
+        for box_ in [
+            Framing::default(),
+            Framing::around(Vec3::new(-1.2, 0.0, -0.3), Vec3::new(0.9, 0.5, 1.1)),
+        ] {
+            for aspect in [0.5, 1.0, 2.0] {
+                for yaw in 0..8 {
+                    let orbit = Orbit {
+                        yaw_rad: yaw as f32 * 0.8,
+                        ..Orbit::default()
+                    };
+                    let camera = camera_transform(&orbit, &box_, aspect);
+                    let largest = box_
+                        .corners()
+                        .map(|corner| on_view(corner, &camera, aspect).abs().max_element())
+                        .fold(0.0, f32::max);
+                    assert!(largest < FILL + 0.01, "corner at {largest}");
+                    assert!(largest > FILL - 0.15, "too far away: {largest}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn dragging_right_turns_the_figure_right_and_stays_above_ground() {
+        let size = Vec2::new(800.0, 600.0);
+        let mut orbit = Orbit::default();
+        orbit.drag(Vec2::new(100.0, 0.0), size);
+        assert!(orbit.yaw_rad < Orbit::default().yaw_rad);
+        orbit.drag(Vec2::new(0.0, -1.0e6), size);
+        assert_eq!(orbit.pitch_rad, PITCH_RANGE_RAD[0]);
+        orbit.drag(Vec2::new(f32::NAN, 0.0), size);
+        assert!(orbit.yaw_rad.is_finite());
+        let camera = camera_transform(&orbit, &Framing::default(), 1.3);
+        assert!(camera.translation.y >= 0.05);
+    }
+
+    #[test]
+    fn zoom_stays_in_range() {
+        let mut orbit = Orbit::default();
+        orbit.scroll(1.0e9);
+        assert_eq!(orbit.zoom, ZOOM_RANGE[0]);
+        orbit.scroll(-1.0e9);
+        assert_eq!(orbit.zoom, ZOOM_RANGE[1]);
+        orbit.scroll(f32::NAN);
+        assert_eq!(orbit.zoom, ZOOM_RANGE[1]);
+    }
+}

@@ -1,0 +1,163 @@
+//! Taking a picture of the editor without a window, for scripts and tests.
+
+use std::io::Cursor;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use bevy::prelude::*;
+use bevy::render::render_resource::PipelineCache;
+use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
+use bevy::render::{Render, RenderApp, RenderSystems};
+use stick3d_model::files::write_atomically;
+use thiserror::Error;
+
+use super::PictureTarget;
+use super::viewport::EditedFigure;
+use crate::figure::{FigureStatus, StickSketch};
+
+/// So many frames in a row nothing may be waited for: textures and shaders arrive a frame or two late.
+const CALM_FRAMES: u32 = 10;
+/// After so many frames something is wrong.
+const MAX_FRAMES: u32 = 3_000;
+
+/// Why no picture was taken.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ScreenshotError {
+    /// The body could not be made.
+    #[error("no picture was taken, for the body could not be made: {0}")]
+    Body(String),
+    /// The renderer never came to rest.
+    #[error(
+        "no picture was taken, for after {MAX_FRAMES} frames the renderer was still compiling {0} shaders"
+    )]
+    NeverReady(usize),
+    /// The picture could not be encoded.
+    #[error("the picture could not be encoded as PNG: {0}")]
+    Encode(String),
+    /// The picture could not be written.
+    #[error(transparent)]
+    Write(#[from] std::io::Error),
+}
+
+/// Takes one picture as soon as everything is there, writes it, and ends the app.
+pub(super) struct ScreenshotPlugin {
+    /// Where to write.
+    pub(super) path: PathBuf,
+    /// What went wrong, for whoever runs the app.
+    pub(super) outcome: Arc<Mutex<Option<ScreenshotError>>>,
+}
+
+impl Plugin for ScreenshotPlugin {
+    fn build(&self, app: &mut App) {
+        // Until the renderer has counted once, one is missing.
+        let pending = Arc::new(AtomicUsize::new(1));
+        app.insert_resource(Shoot {
+            path: self.path.clone(),
+            outcome: self.outcome.clone(),
+            pending: pending.clone(),
+            frames: 0,
+            calm_frames: 0,
+            shot: false,
+        })
+        .add_systems(Last, shoot_when_ready);
+        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+            render_app.insert_resource(Pending(pending)).add_systems(
+                Render,
+                count_pending_pipelines.after(RenderSystems::Render),
+            );
+        }
+    }
+}
+
+/// How many pipelines the renderer still compiles.
+#[derive(Resource)]
+struct Pending(Arc<AtomicUsize>);
+
+fn count_pending_pipelines(cache: Res<PipelineCache>, pending: Res<Pending>) {
+    pending
+        .0
+        .store(cache.waiting_pipelines().count(), Ordering::Relaxed);
+}
+
+#[derive(Resource)]
+struct Shoot {
+    path: PathBuf,
+    outcome: Arc<Mutex<Option<ScreenshotError>>>,
+    pending: Arc<AtomicUsize>,
+    frames: u32,
+    calm_frames: u32,
+    shot: bool,
+}
+
+impl Shoot {
+    fn end(&self, result: Result<(), ScreenshotError>, exit: &mut MessageWriter<AppExit>) {
+        match result {
+            Ok(()) => exit.write(AppExit::Success),
+            Err(error) => {
+                *self.outcome.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                exit.write(AppExit::error())
+            }
+        };
+    }
+}
+
+fn shoot_when_ready(
+    mut commands: Commands,
+    mut shoot: ResMut<Shoot>,
+    figures: Query<&FigureStatus, (With<EditedFigure>, With<StickSketch>)>,
+    target: Res<PictureTarget>,
+    mut exit: MessageWriter<AppExit>,
+) {
+    if shoot.shot {
+        return;
+    }
+    shoot.frames += 1;
+    let pending = shoot.pending.load(Ordering::Relaxed);
+    if let Some(problem) = figures.iter().find_map(FigureStatus::problem) {
+        shoot.shot = true;
+        shoot.end(
+            Err(ScreenshotError::Body(problem.to_owned())),
+            &mut exit,
+        );
+        return;
+    }
+    if shoot.frames > MAX_FRAMES {
+        shoot.shot = true;
+        shoot.end(Err(ScreenshotError::NeverReady(pending)), &mut exit);
+        return;
+    }
+    let waiting = pending > 0 || figures.iter().any(|status| *status == FigureStatus::Waiting);
+    shoot.calm_frames = if waiting { 0 } else { shoot.calm_frames + 1 };
+    if shoot.calm_frames >= CALM_FRAMES {
+        shoot.shot = true;
+        commands
+            .spawn(Screenshot::image(target.0.clone()))
+            .observe(write_picture);
+    }
+}
+
+fn write_picture(
+    captured: On<ScreenshotCaptured>,
+    shoot: Res<Shoot>,
+    mut exit: MessageWriter<AppExit>,
+) {
+    let result = png_bytes(&captured.image)
+        .and_then(|bytes| Ok(write_atomically(&shoot.path, &bytes)?));
+    shoot.end(result, &mut exit);
+}
+
+fn png_bytes(image: &Image) -> Result<Vec<u8>, ScreenshotError> {
+    let encode = |message: String| ScreenshotError::Encode(message);
+    let picture = image
+        .clone()
+        .try_into_dynamic()
+        .map_err(|error| encode(error.to_string()))?
+        .to_rgb8();
+    let mut bytes = Cursor::new(Vec::new());
+    picture
+        .write_to(&mut bytes, image::ImageFormat::Png)
+        .map_err(|error| encode(error.to_string()))?;
+    Ok(bytes.into_inner())
+}

@@ -1,0 +1,133 @@
+//! The components of a figure: what a game writes, and what the plugin writes.
+
+use bevy::prelude::*;
+use stick3d_figure::{Figure, Sketch, SketchError};
+
+use crate::model_asset::StickModel;
+use crate::stream::StreamedBody;
+
+/// A body that takes the pose of a [`StickSketch`] or of a [`Latent`].
+///
+/// # Mandatory components
+/// Added by themselves: [`Latent`], [`Grounded`], [`FigureStatus`], [`StreamedBody`], [`Transform`],
+/// [`Visibility`].
+///
+/// # Optional components
+/// - [`StickSketch`]: the drawing. Without one, and without a latent, the figure stands as its template does.
+/// - A material. Without one the body gets the colours of its model, see
+///   [`Stick3dMaterialPlugin`](crate::Stick3dMaterialPlugin).
+///
+/// # Change detection
+/// A changed [`StickSketch`] is encoded into the [`Latent`]; a changed [`Latent`] is decoded into the
+/// entity's own mesh, in the same frame. A figure of which neither changed costs a comparison.
+#[derive(Component, Clone, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component, Debug, PartialEq, Clone)]
+#[require(Latent, Grounded, FigureStatus, StreamedBody, Transform, Visibility)]
+pub struct StickFigure(pub Handle<StickModel>);
+
+impl StickFigure {
+    /// The man that ships with the plugin.
+    #[cfg(feature = "human")]
+    pub const fn human() -> Self {
+        Self(crate::model_asset::HUMAN_MODEL)
+    }
+}
+
+/// What was drawn: one point per joint of the figure, x right, y up, in any unit.
+///
+/// The points are checked when they are used, so that any tool may edit them: a wrong number of them,
+/// a coordinate that is not finite, or joints that all coincide leave the body as it was, and
+/// [`FigureStatus`] says why.
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Debug, Default, PartialEq, Clone)]
+pub struct StickSketch {
+    /// One point per joint, in the order of the figure's joints.
+    pub points: Vec<Vec2>,
+}
+
+impl StickSketch {
+    /// A sketch from one point per joint, in the order of the figure's joints; checked when it is used.
+    pub fn new(points: impl Into<Vec<Vec2>>) -> Self {
+        Self {
+            points: points.into(),
+        }
+    }
+
+    /// A sketch of the man from named joints: `[("forehead", vec2(0.0, 1.7)), ...]`.
+    ///
+    /// # Errors
+    /// As [`Sketch::from_named`]: an unknown, missing or doubled joint, a coordinate that is not finite.
+    pub fn human<'a>(
+        joints: impl IntoIterator<Item = (&'a str, Vec2)>,
+    ) -> Result<Self, SketchError> {
+        Sketch::from_named(Figure::human(), joints).map(Self::from)
+    }
+
+    /// The checked sketch of a figure.
+    ///
+    /// # Errors
+    /// As [`Sketch::new`].
+    pub fn to_sketch(&self, figure: &Figure) -> Result<Sketch, SketchError> {
+        Sketch::new(figure, self.points.clone())
+    }
+}
+
+impl From<Sketch> for StickSketch {
+    fn from(sketch: Sketch) -> Self {
+        Self {
+            points: sketch.points().to_vec(),
+        }
+    }
+}
+
+impl From<&Sketch> for StickSketch {
+    fn from(sketch: &Sketch) -> Self {
+        Self {
+            points: sketch.points().to_vec(),
+        }
+    }
+}
+
+/// The pose as the networks know it: the 256 numbers z of the paper.
+///
+/// Empty until the figure is first posed. Written by the plugin when the [`StickSketch`] changes, and
+/// free to be written by anything else: an animation, a blend of two poses, a slider.
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Debug, Default, PartialEq, Clone)]
+pub struct Latent(pub Vec<f32>);
+
+/// Whether the body stands on the ground: its lowest vertex at y = 0 of the entity. On by default.
+///
+/// When off, the figure's root joint (a man's abdomen) is at the entity's origin.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component, Debug, Default, PartialEq, Clone)]
+pub struct Grounded(pub bool);
+
+impl Default for Grounded {
+    fn default() -> Self {
+        Self(true)
+    }
+}
+
+/// How it stands with one figure. Written by the plugin.
+#[derive(Component, Clone, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Component, Debug, Default, PartialEq, Clone)]
+pub enum FigureStatus {
+    /// The model is not there yet.
+    #[default]
+    Waiting,
+    /// The body shows the sketch or latent.
+    Ready,
+    /// The body could not follow, and shows what it showed before. The text says why.
+    Failed(String),
+}
+
+impl FigureStatus {
+    /// Why the body does not follow; `None` while all is well.
+    pub fn problem(&self) -> Option<&str> {
+        match self {
+            Self::Failed(message) => Some(message),
+            Self::Waiting | Self::Ready => None,
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! From latents to bodies: what a figure's own mesh is, and when it is written.
+
+mod cpu;
+
+use bevy::asset::RenderAssetUsages;
+use bevy::camera::primitives::Aabb;
+use bevy::camera::visibility::NoAutoAabb;
+use bevy::mesh::{Indices, PrimitiveTopology};
+use bevy::prelude::*;
+use stick3d_model::Model;
+
+use crate::figure::{FigureStatus, Grounded, Latent, StickFigure};
+use crate::inference::{ReadyModel, StickInference};
+use crate::schedule::Stick3dSystems;
+
+pub use cpu::{BodyBounds, StreamError};
+
+/// The body of a figure, as the plugin keeps it. Written by the plugin.
+///
+/// The mesh belongs to this entity alone; it is in its `Mesh3d` too, and is freed with it.
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Debug, Default, Clone)]
+pub struct StreamedBody {
+    mesh: Option<Handle<Mesh>>,
+    generation: u64,
+    failed: bool,
+}
+
+impl StreamedBody {
+    /// The mesh, once there is one.
+    pub fn mesh(&self) -> Option<&Handle<Mesh>> {
+        self.mesh.as_ref()
+    }
+
+    /// Which ready model made the mesh; 0 before the first.
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+}
+
+/// Decodes changed latents into meshes, on the CPU.
+#[derive(Debug, Default, Clone, Copy)]
+pub struct Stick3dStreamPlugin;
+
+impl Plugin for Stick3dStreamPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<StreamedBody>()
+            .register_type::<Grounded>()
+            .add_systems(PostUpdate, stream_bodies.in_set(Stick3dSystems::Decode));
+    }
+
+    fn finish(&self, app: &mut App) {
+        // An app without a renderer has no meshes of its own accord.
+        if !app.world().contains_resource::<Assets<Mesh>>() {
+            app.init_asset::<Mesh>();
+        }
+    }
+}
+
+/// Changed latents become vertices; a figure without a mesh for its model gets one.
+fn stream_bodies(
+    mut commands: Commands,
+    mut figures: Query<(
+        Entity,
+        &StickFigure,
+        Ref<Latent>,
+        Ref<Grounded>,
+        &mut StreamedBody,
+        &mut FigureStatus,
+        Option<&mut Aabb>,
+    )>,
+    mut inference: ResMut<StickInference>,
+    mut meshes: ResMut<Assets<Mesh>>,
+) {
+    for (entity, figure, latent, grounded, mut body, mut status, aabb) in &mut figures {
+        let Some(ready) = inference.get_mut(&figure.0) else {
+            continue;
+        };
+        let other_model = body.generation != ready.generation;
+        if !(other_model || latent.is_changed() || grounded.is_changed()) {
+            continue;
+        }
+        if other_model || body.mesh.is_none() {
+            let mesh = meshes.add(empty_mesh(ready.model.model()));
+            commands
+                .entity(entity)
+                .insert((Mesh3d(mesh.clone()), NoAutoAabb));
+            body.mesh = Some(mesh);
+            body.generation = ready.generation;
+        }
+        let shown = body
+            .mesh
+            .as_ref()
+            .and_then(|handle| meshes.get_mut(handle))
+            .ok_or(StreamError::MeshGone)
+            .and_then(|mesh| show(ready, &latent, *grounded, mesh));
+        match shown {
+            Ok(bounds) => {
+                let bounds = Aabb::from_min_max(bounds.low, bounds.high);
+                match aabb {
+                    Some(mut aabb) => *aabb = bounds,
+                    None => {
+                        commands.entity(entity).insert(bounds);
+                    }
+                }
+                if body.failed || *status == FigureStatus::Waiting {
+                    status.set_if_neq(FigureStatus::Ready);
+                }
+                body.failed = false;
+            }
+            Err(error) => {
+                body.failed = true;
+                status.set_if_neq(FigureStatus::Failed(error.to_string()));
+            }
+        }
+    }
+}
+
+/// Decodes into the mesh, which counts as changed only if the latent is fit to be decoded.
+fn show(
+    ready: &mut ReadyModel,
+    latent: &Latent,
+    grounded: Grounded,
+    mut mesh: bevy::asset::AssetMut<Mesh>,
+) -> Result<BodyBounds, StreamError> {
+    cpu::check(&latent.0, ready.inference.latent_len())?;
+    cpu::write_body(&mut ready.inference, &latent.0, grounded.0, &mut mesh)
+}
+
+/// A mesh of the model's topology and colours, all vertices at the origin.
+fn empty_mesh(model: &Model) -> Mesh {
+    let vertex_count = model.vertex_count();
+    let indices = model.triangles().as_flattened().to_vec();
+    let colors: Vec<[f32; 4]> = model
+        .colors()
+        .iter()
+        .map(|color| color.map(|channel| f32::from(channel) / 255.0))
+        .collect();
+    // Meshes that live in the render world alone are not uploaded again when they change.
+    Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::default(),
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vec![[0.0_f32; 3]; vertex_count])
+    .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0_f32; 3]; vertex_count])
+    .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+    .with_inserted_indices(Indices::U32(indices))
+}

@@ -1,0 +1,89 @@
+//! What the headless tests share: an app without window or renderer, and questions to ask of it.
+#![allow(dead_code, reason = "every test uses some of it")]
+
+use std::time::Duration;
+
+use bevy::asset::AssetPlugin;
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use bevy_stick3d::prelude::*;
+
+/// An app with nothing but what the plugin needs, and a clock that ticks a 60th of a second per update.
+pub fn app() -> App {
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        AssetPlugin {
+            file_path: concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data").to_owned(),
+            ..default()
+        },
+        TransformPlugin,
+        Stick3dPlugin,
+    ))
+    .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_micros(
+        16_667,
+    )));
+    app.finish();
+    app.cleanup();
+    app
+}
+
+/// The man with his arms stretched out to the sides, level.
+pub fn t_pose() -> StickSketch {
+    let mut points = Figure::human().template.clone();
+    let neck = points[joint("neck")];
+    for (name, x) in [("elbow_r", -0.33), ("hand_r", -0.62), ("elbow_l", 0.33), ("hand_l", 0.62)] {
+        points[joint(name)] = neck + vec2(x, -0.03);
+    }
+    StickSketch::new(points)
+}
+
+/// The man with both arms up.
+pub fn cheer() -> StickSketch {
+    let mut points = Figure::human().template.clone();
+    let neck = points[joint("neck")];
+    for (name, x, y) in [
+        ("elbow_r", -0.30, 0.22),
+        ("hand_r", -0.38, 0.52),
+        ("elbow_l", 0.30, 0.22),
+        ("hand_l", 0.38, 0.52),
+    ] {
+        points[joint(name)] = neck + vec2(x, y);
+    }
+    StickSketch::new(points)
+}
+
+/// The index of a joint of the man.
+pub fn joint(name: &str) -> usize {
+    Figure::human().joint_index(name).unwrap()
+}
+
+/// The positions of an entity's mesh; none when it has no mesh yet.
+pub fn positions(app: &App, entity: Entity) -> Option<Vec<Vec3>> {
+    let mesh = app.world().get::<Mesh3d>(entity)?;
+    let mesh = app.world().resource::<Assets<Mesh>>().get(mesh)?;
+    let values = mesh.attribute(Mesh::ATTRIBUTE_POSITION)?.as_float3()?;
+    Some(values.iter().map(|&position| Vec3::from(position)).collect())
+}
+
+/// The normals of an entity's mesh.
+pub fn normals(app: &App, entity: Entity) -> Option<Vec<Vec3>> {
+    let mesh = app.world().get::<Mesh3d>(entity)?;
+    let mesh = app.world().resource::<Assets<Mesh>>().get(mesh)?;
+    let values = mesh.attribute(Mesh::ATTRIBUTE_NORMAL)?.as_float3()?;
+    Some(values.iter().map(|&normal| Vec3::from(normal)).collect())
+}
+
+/// The corners of the box round a body.
+pub fn bounds(positions: &[Vec3]) -> (Vec3, Vec3) {
+    positions
+        .iter()
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &p| {
+            (low.min(p), high.max(p))
+        })
+}
+
+/// How an entity says it is doing.
+pub fn status(app: &App, entity: Entity) -> FigureStatus {
+    app.world().get::<FigureStatus>(entity).unwrap().clone()
+}
