@@ -10,7 +10,9 @@ fn our_systems_have_no_ambiguities() {
     let mut app = support::app();
     let counts = ambiguities(&mut app);
     assert!(
-        counts.iter().any(|(label, _)| format!("{label:?}") == "PostUpdate"),
+        counts
+            .iter()
+            .any(|(label, _)| format!("{label:?}") == "PostUpdate"),
         "the schedules were not looked at: {counts:?}"
     );
     let total: usize = counts.iter().map(|(_, count)| count).sum();
@@ -42,8 +44,10 @@ fn ambiguities(app: &mut App) -> Vec<(InternedScheduleLabel, usize)> {
             ..default()
         });
     }
-    let labels: Vec<InternedScheduleLabel> =
-        schedules.iter().map(|(_, schedule)| schedule.label()).collect();
+    let labels: Vec<InternedScheduleLabel> = schedules
+        .iter()
+        .map(|(_, schedule)| schedule.label())
+        .collect();
     labels
         .into_iter()
         .map(|label| {

@@ -22,7 +22,10 @@ fn a_nan_in_a_sketch_is_refused_and_the_body_stays() {
     let FigureStatus::Failed(message) = status(&app, man) else {
         panic!("a NaN passed");
     };
-    assert!(message.contains("neck") && message.contains("NaN"), "{message}");
+    assert!(
+        message.contains("neck") && message.contains("NaN"),
+        "{message}"
+    );
     assert_eq!(positions(&app, man), before);
 
     for bad in [
@@ -93,7 +96,10 @@ fn model_files_that_are_none_are_named_and_the_app_goes_on() {
     for name in ["missing.stick3d", "empty.stick3d", "text.stick3d"] {
         let mut app = app();
         let model: Handle<StickModel> = app.world().resource::<AssetServer>().load(name);
-        let broken = app.world_mut().spawn((StickFigure(model.clone()), t_pose())).id();
+        let broken = app
+            .world_mut()
+            .spawn((StickFigure(model.clone()), t_pose()))
+            .id();
         let whole = app.world_mut().spawn((StickFigure::human(), t_pose())).id();
         let problem = wait_for_failure(&mut app, broken);
         assert!(problem.contains(name), "{problem}");

@@ -11,10 +11,7 @@ use support::{app, bounds, cheer, joint, normals, positions, status, t_pose};
 #[test]
 fn a_sketch_is_a_body_in_the_same_frame() {
     let mut app = app();
-    let man = app
-        .world_mut()
-        .spawn((StickFigure::human(), t_pose()))
-        .id();
+    let man = app.world_mut().spawn((StickFigure::human(), t_pose())).id();
     app.update();
 
     assert_eq!(status(&app, man), FigureStatus::Ready);
@@ -45,7 +42,12 @@ fn the_body_has_the_pose_that_was_drawn() {
     app.world_mut().entity_mut(man).insert(t_pose());
     app.update();
     let (_, level) = bounds(&positions(&app, man).unwrap());
-    assert!(up.y > level.y + 0.15, "hands up: {} m, level: {} m", up.y, level.y);
+    assert!(
+        up.y > level.y + 0.15,
+        "hands up: {} m, level: {} m",
+        up.y,
+        level.y
+    );
 
     // One arm up: the raised hand is on the side it was drawn on.
     let mut one_up = t_pose();
@@ -76,10 +78,7 @@ fn a_figure_without_a_sketch_stands_as_its_template() {
     let mut app = app();
     let plain = app.world_mut().spawn(StickFigure::human()).id();
     let template = StickSketch::new(Figure::human().template.clone());
-    let drawn = app
-        .world_mut()
-        .spawn((StickFigure::human(), template))
-        .id();
+    let drawn = app.world_mut().spawn((StickFigure::human(), template)).id();
     app.update();
     assert_eq!(positions(&app, plain), positions(&app, drawn));
     assert_eq!(status(&app, plain), FigureStatus::Ready);
@@ -138,7 +137,11 @@ fn unchanged_figures_are_not_touched() {
         .resource_mut::<Messages<AssetEvent<Mesh>>>()
         .drain()
         .collect();
-    assert_eq!(events, [AssetEvent::Modified { id: mesh }], "one mesh, written in place");
+    assert_eq!(
+        events,
+        [AssetEvent::Modified { id: mesh }],
+        "one mesh, written in place"
+    );
 }
 
 #[test]

@@ -51,7 +51,11 @@ fn picture(sketch: &Path, out: &Path) -> Option<RgbImage> {
         println!("skipped: {said}");
         return None;
     }
-    assert!(output.status.success(), "the editor ended with {}: {said}", output.status);
+    assert!(
+        output.status.success(),
+        "the editor ended with {}: {said}",
+        output.status
+    );
     Some(image::open(out).unwrap().to_rgb8())
 }
 
@@ -126,7 +130,10 @@ fn a_bad_sketch_ends_with_one_sentence_and_code_one() {
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert_eq!(said.lines().count(), 1, "{said}");
-    assert!(said.contains("missing.json") && !said.contains("panicked"), "{said}");
+    assert!(
+        said.contains("missing.json") && !said.contains("panicked"),
+        "{said}"
+    );
     assert!(!out.exists());
 }
 
@@ -141,5 +148,8 @@ fn without_a_display_it_ends_with_one_sentence_and_code_three() {
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(3), "{said}");
-    assert!(said.contains("no display") && !said.contains("panicked"), "{said}");
+    assert!(
+        said.contains("no display") && !said.contains("panicked"),
+        "{said}"
+    );
 }

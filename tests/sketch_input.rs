@@ -130,16 +130,29 @@ fn one_stroke_per_bone_is_a_body_when_the_pen_lifts() {
     studio.stroke(place(from), place(to));
     studio.app.update();
     assert_eq!(studio.seen().completed, 1);
-    let sketch = studio.app.world().get::<StickSketch>(studio.man).unwrap().clone();
+    let sketch = studio
+        .app
+        .world()
+        .get::<StickSketch>(studio.man)
+        .unwrap()
+        .clone();
     for (name, drawn) in Figure::human().joints.iter().zip(&sketch.points) {
         let meant = place(&name.name);
         let drawn = screen_from_canvas(AREA, *drawn);
-        assert!(drawn.distance(meant) < 12.0, "{}: {drawn} for {meant}", name.name);
+        assert!(
+            drawn.distance(meant) < 12.0,
+            "{}: {drawn} for {meant}",
+            name.name
+        );
     }
     assert_eq!(status(&studio.app, studio.man), FigureStatus::Ready);
 
     // The body of this very frame is that of the sketch.
-    let twin = studio.app.world_mut().spawn((StickFigure::human(), sketch)).id();
+    let twin = studio
+        .app
+        .world_mut()
+        .spawn((StickFigure::human(), sketch))
+        .id();
     let body = positions(&studio.app, studio.man).unwrap();
     studio.app.update();
     assert_eq!(positions(&studio.app, twin).unwrap(), body);
@@ -158,22 +171,46 @@ fn messages_reach_systems_in_the_frame_of_the_stroke() {
         told.0.extend(changes.read().map(|_| "change"));
     }
     let mut studio = Studio::new(false);
-    studio.app.init_resource::<Told>().add_systems(Update, listen);
+    studio
+        .app
+        .init_resource::<Told>()
+        .add_systems(Update, listen);
     studio.stroke(place("forehead"), place("neck"));
     studio.app.update();
-    assert_eq!(studio.app.world().resource::<Told>().0, ["stroke", "change"]);
+    assert_eq!(
+        studio.app.world().resource::<Told>().0,
+        ["stroke", "change"]
+    );
 }
 
 #[test]
 fn torso_and_head_make_a_preview_with_guessed_limbs() {
     let mut studio = Studio::new(true);
     draw(&mut studio, &BONES[..5]);
-    assert!(studio.app.world().get::<SketchPreview>(studio.man).is_none());
+    assert!(
+        studio
+            .app
+            .world()
+            .get::<SketchPreview>(studio.man)
+            .is_none()
+    );
     draw(&mut studio, &BONES[5..6]);
-    assert!(studio.app.world().get::<SketchPreview>(studio.man).is_some());
+    assert!(
+        studio
+            .app
+            .world()
+            .get::<SketchPreview>(studio.man)
+            .is_some()
+    );
     assert!(positions(&studio.app, studio.man).is_some());
     draw(&mut studio, &BONES[6..]);
-    assert!(studio.app.world().get::<SketchPreview>(studio.man).is_none());
+    assert!(
+        studio
+            .app
+            .world()
+            .get::<SketchPreview>(studio.man)
+            .is_none()
+    );
     assert!(studio.app.world().get::<StickSketch>(studio.man).is_some());
 }
 
@@ -196,7 +233,12 @@ fn joints_are_dragged_and_everything_is_undone() {
     studio.app.update();
 
     let undo = |studio: &mut Studio| {
-        studio.app.world_mut().get_mut::<SketchDrawing>(studio.canvas).unwrap().undo();
+        studio
+            .app
+            .world_mut()
+            .get_mut::<SketchDrawing>(studio.canvas)
+            .unwrap()
+            .undo();
         studio.app.update();
     };
     undo(&mut studio);
@@ -205,7 +247,12 @@ fn joints_are_dragged_and_everything_is_undone() {
     assert!(studio.drawing().sketch().is_none());
     assert_eq!(studio.drawing().strokes().len(), 9);
     assert_eq!(studio.seen().undone, 1);
-    studio.app.world_mut().get_mut::<SketchDrawing>(studio.canvas).unwrap().redo();
+    studio
+        .app
+        .world_mut()
+        .get_mut::<SketchDrawing>(studio.canvas)
+        .unwrap()
+        .redo();
     studio.app.update();
     assert_eq!(positions(&studio.app, studio.man).unwrap(), before);
 }
@@ -217,7 +264,11 @@ fn a_scribble_takes_back_the_last_stroke() {
     let (left, right) = (place("elbow_r") + vec2(-60.0, 0.0), place("neck"));
     studio.press(left);
     for turn in 0..9 {
-        let (from, to) = if turn % 2 == 0 { (left, right) } else { (right, left) };
+        let (from, to) = if turn % 2 == 0 {
+            (left, right)
+        } else {
+            (right, left)
+        };
         for step in 1..=6 {
             let slide = vec2(0.0, turn as f32 * 2.0);
             studio.move_to(from.lerp(to, step as f32 / 6.0) + slide);
@@ -235,7 +286,12 @@ fn a_disabled_canvas_and_the_world_beside_it_stay_blank() {
     let mut studio = Studio::new(false);
     studio.stroke(vec2(10.0, 10.0), vec2(60.0, 30.0));
     studio.app.update();
-    studio.app.world_mut().get_mut::<SketchCanvas>(studio.canvas).unwrap().enabled = false;
+    studio
+        .app
+        .world_mut()
+        .get_mut::<SketchCanvas>(studio.canvas)
+        .unwrap()
+        .enabled = false;
     studio.stroke(place("forehead"), place("neck"));
     studio.app.update();
     assert_eq!(studio.seen().strokes, 0);

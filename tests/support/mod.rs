@@ -9,7 +9,7 @@ use bevy::time::TimeUpdateStrategy;
 use bevy_stick3d::prelude::*;
 
 /// An app with nothing but what the plugin needs, and a clock that ticks a 60th of a second per update.
-pub fn app() -> App {
+pub(crate) fn app() -> App {
     let mut app = App::new();
     app.add_plugins((
         MinimalPlugins,
@@ -29,17 +29,22 @@ pub fn app() -> App {
 }
 
 /// The man with his arms stretched out to the sides, level.
-pub fn t_pose() -> StickSketch {
+pub(crate) fn t_pose() -> StickSketch {
     let mut points = Figure::human().template.clone();
     let neck = points[joint("neck")];
-    for (name, x) in [("elbow_r", -0.33), ("hand_r", -0.62), ("elbow_l", 0.33), ("hand_l", 0.62)] {
+    for (name, x) in [
+        ("elbow_r", -0.33),
+        ("hand_r", -0.62),
+        ("elbow_l", 0.33),
+        ("hand_l", 0.62),
+    ] {
         points[joint(name)] = neck + vec2(x, -0.03);
     }
     StickSketch::new(points)
 }
 
 /// The man with both arms up.
-pub fn cheer() -> StickSketch {
+pub(crate) fn cheer() -> StickSketch {
     let mut points = Figure::human().template.clone();
     let neck = points[joint("neck")];
     for (name, x, y) in [
@@ -54,20 +59,25 @@ pub fn cheer() -> StickSketch {
 }
 
 /// The index of a joint of the man.
-pub fn joint(name: &str) -> usize {
+pub(crate) fn joint(name: &str) -> usize {
     Figure::human().joint_index(name).unwrap()
 }
 
 /// The positions of an entity's mesh; none when it has no mesh yet.
-pub fn positions(app: &App, entity: Entity) -> Option<Vec<Vec3>> {
+pub(crate) fn positions(app: &App, entity: Entity) -> Option<Vec<Vec3>> {
     let mesh = app.world().get::<Mesh3d>(entity)?;
     let mesh = app.world().resource::<Assets<Mesh>>().get(mesh)?;
     let values = mesh.attribute(Mesh::ATTRIBUTE_POSITION)?.as_float3()?;
-    Some(values.iter().map(|&position| Vec3::from(position)).collect())
+    Some(
+        values
+            .iter()
+            .map(|&position| Vec3::from(position))
+            .collect(),
+    )
 }
 
 /// The normals of an entity's mesh.
-pub fn normals(app: &App, entity: Entity) -> Option<Vec<Vec3>> {
+pub(crate) fn normals(app: &App, entity: Entity) -> Option<Vec<Vec3>> {
     let mesh = app.world().get::<Mesh3d>(entity)?;
     let mesh = app.world().resource::<Assets<Mesh>>().get(mesh)?;
     let values = mesh.attribute(Mesh::ATTRIBUTE_NORMAL)?.as_float3()?;
@@ -75,7 +85,7 @@ pub fn normals(app: &App, entity: Entity) -> Option<Vec<Vec3>> {
 }
 
 /// The corners of the box round a body.
-pub fn bounds(positions: &[Vec3]) -> (Vec3, Vec3) {
+pub(crate) fn bounds(positions: &[Vec3]) -> (Vec3, Vec3) {
     positions
         .iter()
         .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &p| {
@@ -84,6 +94,6 @@ pub fn bounds(positions: &[Vec3]) -> (Vec3, Vec3) {
 }
 
 /// How an entity says it is doing.
-pub fn status(app: &App, entity: Entity) -> FigureStatus {
+pub(crate) fn status(app: &App, entity: Entity) -> FigureStatus {
     app.world().get::<FigureStatus>(entity).unwrap().clone()
 }

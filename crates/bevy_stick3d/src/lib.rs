@@ -55,7 +55,7 @@ mod stream;
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
 pub use figure::{FigureStatus, Grounded, Latent, StickFigure, StickSketch};
-pub use inference::{ReadyModel, StickInference, Stick3dInferencePlugin};
+pub use inference::{ReadyModel, Stick3dInferencePlugin, StickInference};
 pub use material::{DefaultFigureMaterial, OwnMaterial, Stick3dMaterialPlugin};
 #[cfg(feature = "human")]
 pub use model_asset::HUMAN_MODEL;

@@ -34,6 +34,8 @@ pub(crate) struct Hand {
     /// How far strokes start beside the joint they mean.
     pub(crate) aim_px: f32,
     pub(crate) speed_px_per_s: f32,
+    /// How far bones bulge, at most, in parts of their length.
+    pub(crate) bow: f32,
 }
 
 impl Default for Hand {
@@ -44,6 +46,7 @@ impl Default for Hand {
             jitter_px: 2.0,
             aim_px: 6.0,
             speed_px_per_s: 700.0,
+            bow: 0.04,
         }
     }
 }
@@ -169,7 +172,7 @@ pub(crate) fn draw(
                 let length = pair[0].distance(pair[1]);
                 let steps = (length / hand.spacing_px).ceil().max(1.0);
                 // A slight bow, since nobody draws a straight line.
-                let bow = (pair[1] - pair[0]).perp() * own.random_range(-0.04..0.04);
+                let bow = (pair[1] - pair[0]).perp() * own.random_range(-hand.bow..=hand.bow);
                 for i in 0..=steps as usize {
                     let t = i as f32 / steps;
                     let p = pair[0].lerp(pair[1], t) + bow * (4.0 * t * (1.0 - t));

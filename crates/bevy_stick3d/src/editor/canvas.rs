@@ -36,7 +36,13 @@ impl ToScreen {
 }
 
 /// Paints the whole canvas. `pulse` goes from 0 to 1 and back.
-pub(super) fn paint(painter: &Painter, rect: Rect, drawing: &SketchDrawing, words: &Words, pulse: f32) {
+pub(super) fn paint(
+    painter: &Painter,
+    rect: Rect,
+    drawing: &SketchDrawing,
+    words: &Words,
+    pulse: f32,
+) {
     let to_screen = ToScreen::new(rect);
     paper(painter, rect);
     match drawing.sketch() {
@@ -189,7 +195,12 @@ fn recognised(painter: &Painter, to_screen: ToScreen, drawing: &SketchDrawing) {
     }
     for (joint, point) in placed.iter().enumerate() {
         if let Some(point) = point {
-            handle(painter, to_screen.point(*point), figure.joints[joint].side, 6.0 * size);
+            handle(
+                painter,
+                to_screen.point(*point),
+                figure.joints[joint].side,
+                6.0 * size,
+            );
         }
     }
 }
@@ -239,7 +250,13 @@ fn next_joint(painter: &Painter, to_screen: ToScreen, drawing: &SketchDrawing, p
 fn finished(painter: &Painter, to_screen: ToScreen, drawing: &SketchDrawing, points: &[Vec2]) {
     let figure = drawing.figure();
     let size = to_screen.size();
-    head(painter, to_screen, figure, points, mixed_with_paper(theme::INK, 0.08));
+    head(
+        painter,
+        to_screen,
+        figure,
+        points,
+        mixed_with_paper(theme::INK, 0.08),
+    );
     for &[a, b] in &figure.bones {
         let color = side_color(bone_side(figure, [a, b]));
         let ends = [points[a], points[b]].map(|p| to_screen.point(p));

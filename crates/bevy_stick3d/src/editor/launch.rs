@@ -164,7 +164,7 @@ fn add_no_window(app: &mut App) {
 
 fn log() -> LogPlugin {
     LogPlugin {
-        filter: "warn,bevy_stick3d=info,wgpu=error,naga=error,bevy_render=error,bevy_winit=error"
+        filter: "warn,bevy_stick3d=info,wgpu=error,naga=error,bevy_render=error,bevy_winit=error,bevy_egui=error"
             .to_owned(),
         ..default()
     }
@@ -180,7 +180,11 @@ fn quietly(build: impl FnOnce() -> App) -> Result<App, EditorError> {
         let message = payload
             .downcast_ref::<String>()
             .cloned()
-            .or_else(|| payload.downcast_ref::<&str>().map(|text| (*text).to_owned()))
+            .or_else(|| {
+                payload
+                    .downcast_ref::<&str>()
+                    .map(|text| (*text).to_owned())
+            })
             .unwrap_or_default();
         start_error(&message)
     })
@@ -191,7 +195,9 @@ fn start_error(message: &str) -> EditorError {
     let first_line = message.lines().next().unwrap_or_default().to_owned();
     if message.contains("event loop") {
         EditorError::NoDisplay(first_line)
-    } else if message.contains("GPU") || message.contains("adapter") || message.contains("RequestDevice")
+    } else if message.contains("GPU")
+        || message.contains("adapter")
+        || message.contains("RequestDevice")
     {
         EditorError::NoGpu(first_line)
     } else {
@@ -207,9 +213,12 @@ mod tests {
     fn panics_of_the_set_up_become_sentences_with_codes() {
         let display = start_error("Failed to build event loop: Os(OsError { .. })");
         assert_eq!(display.exit_code(), 3);
-        let gpu = start_error("Unable to find a GPU! Make sure you have installed required drivers!");
+        let gpu =
+            start_error("Unable to find a GPU! Make sure you have installed required drivers!");
         assert_eq!(gpu.exit_code(), 4);
-        let other = quietly(|| panic!("a plugin was added twice")).err().unwrap();
+        let other = quietly(|| panic!("a plugin was added twice"))
+            .err()
+            .unwrap();
         assert_eq!(other.exit_code(), 1);
         assert!(other.to_string().contains("a plugin was added twice"));
     }

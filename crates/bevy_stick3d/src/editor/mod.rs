@@ -255,7 +255,9 @@ fn place_canvas(canvas: &mut Mut<SketchCanvas>, rect: egui::Rect) {
 }
 
 fn show_cursor(ctx: &egui::Context, canvas: egui::Rect, drawing: &SketchDrawing) {
-    let over = ctx.pointer_hover_pos().is_some_and(|at| canvas.contains(at));
+    let over = ctx
+        .pointer_hover_pos()
+        .is_some_and(|at| canvas.contains(at));
     if drawing.dragged().is_some() {
         ctx.set_cursor_icon(egui::CursorIcon::Grabbing);
     } else if over && drawing.hovered().is_some() {
@@ -307,7 +309,9 @@ fn chosen_file(editor: &Editor) -> PathBuf {
 
 fn save(editor: &mut Editor, drawing: &SketchDrawing) {
     let Some(sketch) = drawing.sketch() else {
-        editor.status.note("There is nothing to save until the figure is complete");
+        editor
+            .status
+            .note("There is nothing to save until the figure is complete");
         return;
     };
     let path = chosen_file(editor);

@@ -6,7 +6,7 @@ use bevy::transform::components::Transform;
 /// The vertical opening of the camera. A long lens flatters a body.
 pub(super) const FOV_Y_RAD: f32 = 0.48;
 /// How much of the view the framed box may fill.
-const FILL: f32 = 0.80;
+const FILL: f32 = 0.86;
 const PITCH_RANGE_RAD: [f32; 2] = [-0.08, 1.45];
 const ZOOM_RANGE: [f32; 2] = [0.25, 3.0];
 
@@ -39,11 +39,10 @@ impl Orbit {
             return;
         }
         let turn = delta_px / size_px.min_element() * std::f32::consts::PI;
-        self.yaw_rad =
-            (self.yaw_rad - turn.x + std::f32::consts::PI).rem_euclid(std::f32::consts::TAU)
-                - std::f32::consts::PI;
-        self.pitch_rad =
-            (self.pitch_rad + turn.y).clamp(PITCH_RANGE_RAD[0], PITCH_RANGE_RAD[1]);
+        self.yaw_rad = (self.yaw_rad - turn.x + std::f32::consts::PI)
+            .rem_euclid(std::f32::consts::TAU)
+            - std::f32::consts::PI;
+        self.pitch_rad = (self.pitch_rad + turn.y).clamp(PITCH_RANGE_RAD[0], PITCH_RANGE_RAD[1]);
     }
 
     /// Comes nearer for positive `points` of scrolling.

@@ -72,14 +72,26 @@ pub(super) fn toolbar(
             .layout(Layout::left_to_right(Align::Center)),
         |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            button(ui, "Undo", "Ctrl+Z, or scribble", drawing.can_undo(), Action::Undo);
+            button(
+                ui,
+                "Undo",
+                "Ctrl+Z, or scribble",
+                drawing.can_undo(),
+                Action::Undo,
+            );
             button(ui, "Redo", "Ctrl+Shift+Z", drawing.can_redo(), Action::Redo);
             button(ui, "Mirror", "M", finished, Action::Mirror);
             button(ui, "Clear", "Esc", begun, Action::Clear);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
                 button(ui, "Save", "Ctrl+S", finished, Action::Save);
-                button(ui, "Open", "Ctrl+O, or drop a file on the window", true, Action::Open);
+                button(
+                    ui,
+                    "Open",
+                    "Ctrl+O, or drop a file on the window",
+                    true,
+                    Action::Open,
+                );
                 let width = (ui.available_width() - 8.0).clamp(40.0, 200.0);
                 ui.add(
                     TextEdit::singleline(file)
@@ -106,12 +118,9 @@ fn status_text(ui: &Ui, toolbar: Rect, status: &StatusLine) {
         theme::INK_SOFT
     };
     let room = toolbar.width() - 48.0;
-    let galley = ui.painter().layout(
-        text.to_owned(),
-        theme::small(),
-        color,
-        room.max(40.0),
-    );
+    let galley = ui
+        .painter()
+        .layout(text.to_owned(), theme::small(), color, room.max(40.0));
     let at = toolbar.left_top() + vec2(24.0, -18.0 - galley.size().y);
     ui.painter().galley(at, galley, color);
 }
@@ -135,8 +144,7 @@ pub(super) fn view(
     note: Option<&str>,
 ) -> ViewInput {
     let corners = CornerRadius::from(theme::CARD_RADIUS);
-    ui.painter()
-        .add(theme::CARD_SHADOW.as_shape(rect, corners));
+    ui.painter().add(theme::CARD_SHADOW.as_shape(rect, corners));
     egui::Image::from_texture(SizedTexture::new(texture, rect.size()))
         .corner_radius(corners)
         .paint_at(ui, rect);
@@ -158,9 +166,9 @@ pub(super) fn view(
     ui.painter().text(
         rect.center_bottom() - vec2(0.0, 16.0),
         Align2::CENTER_BOTTOM,
-        "drag to turn  ·  scroll to zoom  ·  double-click to reset",
+        "Drag to turn, scroll to zoom, double-click to reset",
         theme::small(),
-        theme::faded(theme::INK, 0.42),
+        theme::faded(theme::INK, 0.55),
     );
     let response = ui.interact(rect, ui.id().with("view"), Sense::click_and_drag());
     let scroll = if response.hovered() {

@@ -63,10 +63,9 @@ impl Plugin for ScreenshotPlugin {
         })
         .add_systems(Last, shoot_when_ready);
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            render_app.insert_resource(Pending(pending)).add_systems(
-                Render,
-                count_pending_pipelines.after(RenderSystems::Render),
-            );
+            render_app
+                .insert_resource(Pending(pending))
+                .add_systems(Render, count_pending_pipelines.after(RenderSystems::Render));
         }
     }
 }
@@ -117,10 +116,7 @@ fn shoot_when_ready(
     let pending = shoot.pending.load(Ordering::Relaxed);
     if let Some(problem) = figures.iter().find_map(FigureStatus::problem) {
         shoot.shot = true;
-        shoot.end(
-            Err(ScreenshotError::Body(problem.to_owned())),
-            &mut exit,
-        );
+        shoot.end(Err(ScreenshotError::Body(problem.to_owned())), &mut exit);
         return;
     }
     if shoot.frames > MAX_FRAMES {
@@ -128,7 +124,10 @@ fn shoot_when_ready(
         shoot.end(Err(ScreenshotError::NeverReady(pending)), &mut exit);
         return;
     }
-    let waiting = pending > 0 || figures.iter().any(|status| *status == FigureStatus::Waiting);
+    let waiting = pending > 0
+        || figures
+            .iter()
+            .any(|status| *status == FigureStatus::Waiting);
     shoot.calm_frames = if waiting { 0 } else { shoot.calm_frames + 1 };
     if shoot.calm_frames >= CALM_FRAMES {
         shoot.shot = true;
@@ -143,8 +142,8 @@ fn write_picture(
     shoot: Res<Shoot>,
     mut exit: MessageWriter<AppExit>,
 ) {
-    let result = png_bytes(&captured.image)
-        .and_then(|bytes| Ok(write_atomically(&shoot.path, &bytes)?));
+    let result =
+        png_bytes(&captured.image).and_then(|bytes| Ok(write_atomically(&shoot.path, &bytes)?));
     shoot.end(result, &mut exit);
 }
 

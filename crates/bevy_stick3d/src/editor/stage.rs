@@ -135,7 +135,8 @@ fn ground_mesh() -> Mesh {
     let ground = LinearRgba::from(GROUND);
     for ring in 0..=RINGS {
         let radius_m = GROUND_RADIUS_M * (ring as f32 / RINGS as f32).powf(1.5);
-        let fade = ((radius_m - GROUND_SOLID_M) / (GROUND_RADIUS_M - GROUND_SOLID_M)).clamp(0.0, 1.0);
+        let fade =
+            ((radius_m - GROUND_SOLID_M) / (GROUND_RADIUS_M - GROUND_SOLID_M)).clamp(0.0, 1.0);
         let alpha = (1.0 - fade).powi(2);
         for sector in 0..SECTORS {
             let angle = sector as f32 / SECTORS as f32 * std::f32::consts::TAU;

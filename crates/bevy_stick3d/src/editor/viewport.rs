@@ -101,7 +101,7 @@ fn spawn_view(
             far: 200.0,
             ..default()
         }),
-        Tonemapping::AgX,
+        Tonemapping::KhronosPbrNeutral,
         Msaa::Sample4,
         ShadowFilteringMethod::Gaussian,
         stage::ambient(&mut images),
@@ -178,7 +178,10 @@ fn show_or_hide(
 /// Keeps the body in view, gently.
 fn frame_figure(
     mut view: ResMut<View>,
-    figures: Query<(&Aabb, &Visibility, Ref<StreamedBody>), (With<EditedFigure>, With<StickFigure>)>,
+    figures: Query<
+        (&Aabb, &Visibility, Ref<StreamedBody>),
+        (With<EditedFigure>, With<StickFigure>),
+    >,
     mut cameras: Query<&mut Transform, With<ViewCamera>>,
     clock: Res<EditorClock>,
 ) {

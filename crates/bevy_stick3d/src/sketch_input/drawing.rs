@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use bevy::prelude::*;
 use stick3d_figure::edit::{Drag, History, mirrored_in_place, nearest_joint};
-use stick3d_figure::{
-    Figure, Pen, Progress, Sketch, SketchError, Stroke, is_scribble, progress,
-};
+use stick3d_figure::{Figure, Pen, Progress, Sketch, SketchError, Stroke, is_scribble, progress};
 
 use super::guide::{fitted, guide, is_enough};
 
@@ -383,6 +381,7 @@ impl SketchDrawing {
         self.progress = match &self.ink.sketch {
             Some(sketch) => Progress {
                 placed: sketch.points().iter().copied().map(Some).collect(),
+                from_joint: None,
                 next_joint: None,
                 fraction: 1.0,
                 complete: true,
@@ -413,7 +412,10 @@ mod tests {
             drawing.move_to(hand + Vec2::ONE * (1.0 + step as f32), 0.0);
         }
         drawing.move_to(Vec2::NAN, 0.0);
-        assert_eq!(drawing.sketch().unwrap().points()[3], hand + Vec2::splat(8.0));
+        assert_eq!(
+            drawing.sketch().unwrap().points()[3],
+            hand + Vec2::splat(8.0)
+        );
         drawing.cancel();
         assert_eq!(drawing.sketch(), Some(&before));
         drawing.press(hand, 0.0);

@@ -6,11 +6,11 @@ use stick3d_figure::{Figure, Side, complete_from_template};
 use super::canvas::CANVAS_SIZE;
 
 /// The height of the template, and of sketches that are loaded, canvas units.
-pub(super) const FIGURE_HEIGHT: f32 = CANVAS_SIZE * 0.72;
+pub(super) const FIGURE_HEIGHT: f32 = CANVAS_SIZE * 0.80;
 /// The widest that a loaded sketch may be, canvas units.
 const FIGURE_WIDTH: f32 = CANVAS_SIZE * 0.86;
 /// Where the middle of a figure goes: a little below that of the canvas, whose top has words.
-pub(super) const FIGURE_CENTRE: Vec2 = Vec2::new(0.0, -40.0);
+pub(super) const FIGURE_CENTRE: Vec2 = Vec2::new(0.0, -45.0);
 
 /// One point per joint: the known ones where they were drawn, the others where they may come to be.
 ///

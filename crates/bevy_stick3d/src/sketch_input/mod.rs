@@ -1,8 +1,8 @@
 //! From pointer to sketch: canvases to draw on, without any user interface of their own.
 
 mod canvas;
-mod guide;
 mod drawing;
+mod guide;
 
 use bevy::camera::RenderTarget;
 use bevy::picking::pointer::{Location, PointerAction, PointerButton, PointerId, PointerInput};
@@ -47,8 +47,7 @@ impl Plugin for Stick3dSketchInputPlugin {
 }
 
 /// The canvases as the pointer system needs them.
-type Canvases<'w, 's> =
-    Query<'w, 's, (Entity, &'static SketchCanvas, &'static mut SketchDrawing)>;
+type Canvases<'w, 's> = Query<'w, 's, (Entity, &'static SketchCanvas, &'static mut SketchDrawing)>;
 
 /// Pointer input, in the order it came, becomes strokes and drags.
 fn draw_with_pointers(

@@ -37,11 +37,11 @@ pub enum StreamError {
 
 /// The box round a body, in the entity's space, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyBounds {
+pub(crate) struct BodyBounds {
     /// The smallest coordinates.
-    pub low: Vec3,
+    pub(crate) low: Vec3,
     /// The largest coordinates.
-    pub high: Vec3,
+    pub(crate) high: Vec3,
 }
 
 /// Whether a latent can be decoded at all.

@@ -13,7 +13,8 @@ use crate::figure::{FigureStatus, Grounded, Latent, StickFigure};
 use crate::inference::{ReadyModel, StickInference};
 use crate::schedule::Stick3dSystems;
 
-pub use cpu::{BodyBounds, StreamError};
+use cpu::BodyBounds;
+pub use cpu::StreamError;
 
 /// The body of a figure, as the plugin keeps it. Written by the plugin.
 ///

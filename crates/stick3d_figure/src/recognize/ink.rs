@@ -7,7 +7,7 @@ use glam::{DVec2, Vec2};
 use crate::stroke::Stroke;
 
 /// About how many samples a drawing is reduced to: a head of a human drawn in one line still gets six.
-const SAMPLES: usize = 140;
+const SAMPLES: usize = 120;
 /// Nobody draws a figure with more strokes; it bounds the work.
 pub(super) const MAX_STROKES: usize = 256;
 /// Strokes smaller than this part of the drawing's diagonal are slips of the pen.
@@ -18,6 +18,8 @@ const SMALL_DRAWING_PX: f32 = 180.0;
 const NOT_PIXELS: f32 = 20.0;
 /// How far from straight a bone is drawn, in parts of the tolerance length.
 const STRAIGHTNESS: f32 = 0.014;
+/// How far bones bulge besides, in parts of their own length.
+const BOW: f64 = 0.03;
 /// Deviations along a line are alike over about this part of the diagonal.
 const CORRELATION: f32 = 0.03;
 
@@ -136,7 +138,7 @@ impl Ink {
         };
         let arc = f64::from(self.arc_between(from, to));
         let unit = f64::from(self.tolerance_length);
-        let sigma = f64::from(STRAIGHTNESS) * unit;
+        let sigma = f64::from(STRAIGHTNESS) * unit + BOW * chord_length;
         let independent = 1.0 + arc / (f64::from(CORRELATION) * unit);
         let bend = independent * squares.max(0.0) / count / (2.0 * sigma * sigma);
         let excess = (arc - chord_length).max(0.0) / (0.04 * unit + 0.12 * chord_length);

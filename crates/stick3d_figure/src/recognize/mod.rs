@@ -26,6 +26,9 @@ use search::{Effort, Search};
 /// strokes are taken for unfinished ones.
 const COMPLETE_BONUS: f32 = 2.5;
 
+/// How many strokes after the path's end are looked past.
+const MAX_SURPLUS: usize = 3;
+
 /// Why strokes are no drawing of a figure.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
@@ -55,6 +58,16 @@ pub enum RecognizeError {
         path_len: usize,
         /// The joint that comes next.
         next: String,
+    },
+    /// The strokes go on after the path's end.
+    #[error(
+        "the {strokes} strokes go on after the last joint of figure \"{figure}\"; leave out what is too many"
+    )]
+    Surplus {
+        /// The figure.
+        figure: String,
+        /// How many strokes came.
+        strokes: usize,
     },
     /// What was recognised is no sketch.
     #[error(transparent)]
@@ -96,43 +109,63 @@ pub fn recognize(figure: &Figure, strokes: &[Stroke]) -> Result<Sketch, Recogniz
             strokes: strokes.len(),
         });
     }
-    let ink = Ink::new(strokes).ok_or(RecognizeError::Empty {
-        strokes: strokes.len(),
-    })?;
     let plan = Plan::new(figure);
-    let search = Search::run(&plan, &ink, Effort::USUAL);
-    let found = search
-        .complete()
-        .or_else(|| Search::run(&plan, &ink, Effort::GREAT).complete());
-    let Some(reading) = found else {
-        let progress = progress_of(figure, &plan, &ink, search.any(), Pen::Up);
-        let joint = progress.next_joint.unwrap_or(figure.root);
-        return Err(RecognizeError::Incomplete {
+    // A crooked drawing needs more effort, and gets it when the usual finds nothing.
+    for effort in [Effort::USUAL, Effort::GREAT] {
+        let Some(ink) = Ink::new(strokes) else { break };
+        if let Some(reading) = Search::run(&plan, &ink, effort).complete() {
+            let placed = placed_joints(&plan, &ink, &reading);
+            let points = placed.into_iter().map(Option::unwrap_or_default).collect();
+            return Ok(Sketch::new(figure, points)?);
+        }
+    }
+    Err(why_not_complete(figure, &plan, strokes))
+}
+
+fn why_not_complete(figure: &Figure, plan: &Plan, strokes: &[Stroke]) -> RecognizeError {
+    let Some(ink) = Ink::new(strokes) else {
+        return RecognizeError::Empty {
+            strokes: strokes.len(),
+        };
+    };
+    let progress = progress(figure, strokes, Pen::Up);
+    match progress.next_joint {
+        // Every stroke draws at least one bone.
+        Some(joint) if ink.strokes.len() <= plan.end() => RecognizeError::Incomplete {
             figure: figure.name.clone(),
             reached: (progress.fraction * plan.end() as f32) as usize + 1,
             path_len: figure.path_len(),
             next: figure.joints[joint].name.clone(),
-        });
-    };
-    let placed = placed_joints(&plan, &ink, &reading);
-    Ok(Sketch::new(
-        figure,
-        placed.into_iter().map(Option::unwrap_or_default).collect(),
-    )?)
+        },
+        _ => RecognizeError::Surplus {
+            figure: figure.name.clone(),
+            strokes: strokes.len(),
+        },
+    }
 }
 
 /// How far the strokes so far have come along the path. Fast enough to be asked on every frame while drawing.
 ///
 /// What is still to come can change how the strokes so far are read: a straight stroke from the neck may be a whole
-/// arm or its upper half. More strokes than anybody draws count as nothing.
+/// arm or its upper half, and in a drawing that looks complete the last leg may yet get its lower half. So ask again
+/// with every stroke until the next drawing is begun. Up to three strokes for which the path has no room left are looked
+/// past; more strokes than anybody draws count as nothing.
 pub fn progress(figure: &Figure, strokes: &[Stroke], pen: Pen) -> Progress {
     let plan = Plan::new(figure);
-    let Some(ink) = Ink::new(strokes) else {
-        return progress_of_nothing(figure);
+    let read = |strokes: &[Stroke], effort, pen| {
+        let ink = Ink::new(strokes)?;
+        let reading = reading(&Search::run(&plan, &ink, effort), pen)?;
+        Some(progress_of(&plan, &ink, &reading, pen))
     };
-    let found = reading(&Search::run(&plan, &ink, Effort::USUAL), pen)
-        .or_else(|| reading(&Search::run(&plan, &ink, Effort::GREAT), pen));
-    progress_of(figure, &plan, &ink, found, pen)
+    // Before a crooked reading of all strokes is tried, some after the path's end are looked past.
+    let surplus = (1..strokes.len()).rev().take(MAX_SURPLUS);
+    read(strokes, Effort::USUAL, pen)
+        .or_else(|| {
+            let mut shorter = surplus.filter_map(|n| read(&strokes[..n], Effort::USUAL, Pen::Up));
+            shorter.find(|progress| progress.complete)
+        })
+        .or_else(|| read(strokes, Effort::GREAT, pen))
+        .unwrap_or_else(|| progress_of_nothing(figure))
 }
 
 /// The likeliest reading of a drawing that may still grow.
@@ -158,16 +191,7 @@ fn progress_of_nothing(figure: &Figure) -> Progress {
     }
 }
 
-fn progress_of(
-    figure: &Figure,
-    plan: &Plan,
-    ink: &Ink,
-    reading: Option<Reading>,
-    pen: Pen,
-) -> Progress {
-    let Some(reading) = reading else {
-        return progress_of_nothing(figure);
-    };
+fn progress_of(plan: &Plan, ink: &Ink, reading: &Reading, pen: Pen) -> Progress {
     let reached = reading.visits.last().map_or(0, |visit| visit.path_index);
     let length = |until: usize| -> f32 {
         plan.steps[..until]
@@ -186,7 +210,7 @@ fn progress_of(
             .unwrap_or(plan.end()),
     };
     Progress {
-        placed: placed_joints(plan, ink, &reading),
+        placed: placed_joints(plan, ink, reading),
         next_joint: plan.steps.get(next).map(|step| step.joint),
         from_joint: plan.steps.get(next).map(|_| plan.path[next]),
         fraction: ((length(reached) + begun) / length(plan.end())).clamp(0.0, 1.0),

