@@ -196,17 +196,20 @@ impl Controls {
         })
     }
 
-    /// The indices that a name in a pose stands for: `elbow.flexion` means both elbows.
+    /// The indices that a name in a pose stands for: `elbow.flexion` means both elbows, `hip_r` all
+    /// that the right hip can do, `ankle` all of both ankles.
     ///
     /// # Errors
     /// [`PoseError::UnknownControl`] with the nearest valid name.
     pub fn indices(&self, name: &str, place: &str) -> Result<Vec<usize>, PoseError> {
-        if let Some((stem, rest)) = name.split_once('.')
-            && let Some(&left) = self.by_name.get(&format!("{stem}_l.{rest}"))
-        {
-            return Ok(vec![left, self.list[left].mirror]);
-        }
-        Ok(vec![self.index(name, place)?])
+        let (stem, kind) = name.split_once('.').map_or((name, None), |(a, b)| (a, Some(b)));
+        let meant = |control: &Control| {
+            let (own, own_kind) = control.name.split_once('.').unwrap_or((&control.name, ""));
+            let unsided = own.strip_suffix("_l").or_else(|| own.strip_suffix("_r")).unwrap_or(own);
+            (own == stem || unsided == stem) && kind.is_none_or(|kind| kind == own_kind)
+        };
+        let found: Vec<usize> = (0..self.list.len()).filter(|&i| meant(&self.list[i])).collect();
+        if found.is_empty() { self.index(name, place).map(|index| vec![index]) } else { Ok(found) }
     }
 
     /// Everything at ease, on the ground.

@@ -65,7 +65,9 @@ impl Goal {
     fn bind(&self, controls: &Controls, into: &mut Vec<Bound>) -> Result<(), PoseError> {
         let body = controls.body();
         let all = |names: &[String]| -> Result<Vec<usize>, PoseError> {
-            let halves = |name| Half::of(name).iter().map(move |half| half.name(name));
+            let halves = |name: &String| -> Vec<String> {
+                Half::of(name).iter().map(|half| half.name(name)).collect()
+            };
             names.iter().flat_map(halves).map(|name| body.index(&name)).collect()
         };
         match self {

@@ -1,0 +1,42 @@
+//! A picture of every pose of a library.
+
+use image::RgbaImage;
+use rayon::prelude::*;
+
+use super::controls::Controls;
+use super::library::PoseLibrary;
+use crate::render::{Camera, RenderMesh, contact_sheet, render, vertex_normals};
+use crate::rig::Rig;
+
+/// Draws all poses of a library, each seen from several directions `views` (yaw of the camera, degrees;
+/// 0 = front, 90 = the body's left), every picture `size` pixels square, `columns` poses in a row.
+pub fn pose_sheet(
+    rig: &Rig,
+    controls: &Controls,
+    library: &PoseLibrary,
+    views: &[f32],
+    size: u32,
+    columns: u32,
+) -> RgbaImage {
+    let draw = |pose: &super::NamedPose| {
+        let posed = controls.pose_on_ground(&pose.values, rig);
+        let mut positions = Vec::new();
+        rig.skin(&posed, &mut positions);
+        let normals = vertex_normals(&positions, &rig.mesh.triangles);
+        let mesh = RenderMesh {
+            positions: &positions,
+            normals: &normals,
+            colors: &rig.colors,
+            triangles: &rig.mesh.triangles,
+        };
+        let mut strip = RgbaImage::new(size * views.len() as u32, size);
+        for (i, yaw_deg) in (0_u32..).zip(views) {
+            let camera = Camera::framing(&positions, yaw_deg.to_radians(), 0.16, 1.0);
+            let image = render(&[mesh], &camera, size, size);
+            image::imageops::replace(&mut strip, &image, i64::from(i * size), 0);
+        }
+        (pose.name.clone(), strip)
+    };
+    let items: Vec<_> = library.poses.par_iter().map(draw).collect();
+    contact_sheet(&items, columns)
+}
