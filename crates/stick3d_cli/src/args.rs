@@ -59,11 +59,9 @@ pub(crate) struct PoseArguments {
     pub(crate) json: bool,
 }
 
+/// A rigged body with its poses.
 #[derive(Debug, Args)]
-pub(crate) struct TrainArguments {
-    /// Where to write the model
-    #[arg(long, value_name = "FILE")]
-    pub(crate) out: PathBuf,
+pub(crate) struct BodyFiles {
     /// The rigged body
     #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.glb")]
     pub(crate) rig: PathBuf,
@@ -73,6 +71,16 @@ pub(crate) struct TrainArguments {
     /// The pose library
     #[arg(long, value_name = "FILE", default_value = "assets/poses/human.ron")]
     pub(crate) poses: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TrainArguments {
+    /// Where to write the model
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// The body and its poses
+    #[command(flatten)]
+    pub(crate) body: BodyFiles,
     /// The figure file; the built-in human without it
     #[arg(long, value_name = "FILE")]
     pub(crate) figure: Option<PathBuf>,
@@ -95,21 +103,12 @@ pub(crate) struct EvalArguments {
     /// The model file; the embedded human without it
     #[arg(long, value_name = "FILE")]
     pub(crate) model: Option<PathBuf>,
-    /// The rigged body the model was trained on
-    #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.glb")]
-    pub(crate) rig: PathBuf,
-    /// The rig's degrees of freedom and their limits
-    #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.controls.ron")]
-    pub(crate) controls: PathBuf,
-    /// The pose library
-    #[arg(long, value_name = "FILE", default_value = "assets/poses/human.ron")]
-    pub(crate) poses: PathBuf,
+    /// The body and its poses
+    #[command(flatten)]
+    pub(crate) body: BodyFiles,
     /// Prints the whole report as JSON instead of a table
     #[arg(long)]
     pub(crate) json: bool,
-    /// Also draws this many of the test sketches beside their bodies into a picture
-    #[arg(long, value_name = "FILE.png")]
-    pub(crate) sheet: Option<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -125,15 +124,9 @@ pub(crate) enum BakeCommand {
     },
     /// Draws every pose of the library into one picture
     Poses {
-        /// The rigged body
-        #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.glb")]
-        rig: PathBuf,
-        /// The rig's degrees of freedom and their limits
-        #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.controls.ron")]
-        controls: PathBuf,
-        /// The pose library
-        #[arg(long, value_name = "FILE", default_value = "assets/poses/human.ron")]
-        poses: PathBuf,
+        /// The body and its poses
+        #[command(flatten)]
+        body: BodyFiles,
         /// Where to write the picture
         #[arg(long, value_name = "FILE.png", default_value = "assets/poses/human.png")]
         out: PathBuf,

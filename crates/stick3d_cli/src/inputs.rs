@@ -18,23 +18,23 @@ pub(crate) fn model(path: Option<&Path>) -> Outcome<Model> {
     }
 }
 
-/// The text of `path`, or of standard input for `-`.
+/// The text of `path`.
 pub(crate) fn text(path: &Path) -> Outcome<String> {
-    if path == Path::new("-") {
-        let mut text = String::new();
-        std::io::stdin()
-            .read_to_string(&mut text)
-            .context("cannot read standard input")
-            .map_err(Failure::input)?;
-        return Ok(text);
-    }
     std::fs::read_to_string(path)
         .with_context(|| format!("cannot read {}", path.display()))
         .map_err(Failure::input)
 }
 
-/// The bytes of `path`.
+/// The bytes of `path`, or of standard input for `-`.
 pub(crate) fn bytes(path: &Path) -> Outcome<Vec<u8>> {
+    if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        std::io::stdin()
+            .read_to_end(&mut bytes)
+            .context("cannot read standard input")
+            .map_err(Failure::input)?;
+        return Ok(bytes);
+    }
     std::fs::read(path)
         .with_context(|| format!("cannot read {}", path.display()))
         .map_err(Failure::input)

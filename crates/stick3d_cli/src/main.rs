@@ -1,3 +1,34 @@
-//! The `stick3d` command.
+//! The `stick3d` command: poses a body after a sketch; bakes, trains and measures what it needs for that.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command talks to its terminal")]
 
-fn main() {}
+mod args;
+mod bake;
+mod corpus;
+mod eval;
+mod failure;
+mod inputs;
+mod pose;
+mod progress;
+mod train;
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+use args::{Arguments, Command};
+
+fn main() -> ExitCode {
+    let outcome = match Arguments::parse().command {
+        Command::Pose(arguments) => pose::run(&arguments),
+        Command::Train(arguments) => train::run(&arguments),
+        Command::Eval(arguments) => eval::run(&arguments),
+        Command::Bake(command) => bake::run(&command),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("stick3d: {}", failure.message());
+            failure.exit_code()
+        }
+    }
+}

@@ -3,31 +3,147 @@
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::anyhow;
 use glam::Vec3;
 use serde_json::{Map, Value, json};
 use stick3d_figure::figure::Figure;
-use stick3d_figure::interchange;
 use stick3d_figure::sketch::Sketch;
-use stick3d_model::export::{MeshFormat, MeshView};
+use stick3d_model::export::{ExportError, ExportMesh, MeshFormat, save_mesh};
 use stick3d_model::{Inference, Model};
+use stick3d_train::render::{Camera, RenderMesh, render};
 
 use crate::args::PoseArguments;
+use crate::bake::write_png;
 use crate::failure::{Failure, Outcome};
 use crate::inputs;
 
+/// Width and height of a picture, pixels.
+const PICTURE_PX: (u32, u32) = (800, 1000);
+/// Where a picture is taken from: a little from the body's left and from above, radians.
+const PICTURE_YAW_PITCH_RAD: (f32, f32) = (0.3, 0.16);
+
 /// Runs `stick3d pose`.
 pub(crate) fn run(arguments: &PoseArguments) -> Outcome {
-    // A wrong ending is found before any work is done.
-    let format = arguments.out.as_deref().map(OutputFormat::of).transpose()?;
+    // A name that says no format is found before any work is done.
+    let output = arguments.out.as_deref().map(Output::of).transpose()?;
     let model = inputs::model(arguments.model.as_deref())?;
     let sketch = read_sketch(&arguments.sketch, model.figure())?;
     let body = Body::pose(&model, &sketch)?;
-    if let (Some(path), Some(format)) = (&arguments.out, format) {
-        format.write(path, &model, &body)?;
+    if let Some(output) = output {
+        output.write(&model, &body)?;
     }
     if arguments.json {
         println!("{}", body.to_json(model.figure()));
     }
     Ok(())
+}
+
+fn read_sketch(path: &Path, figure: &Figure) -> Outcome<Sketch> {
+    let bytes = inputs::bytes(path)?;
+    Sketch::from_json(figure, &bytes)
+        .map_err(|error| Failure::input(error).context(format!("cannot use {}", path.display())))
+}
+
+/// A posed body, its lowest vertex at height 0.
+struct Body {
+    latent: Vec<f32>,
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    joints: Vec<Vec3>,
+    encode_s: f64,
+    decode_s: f64,
+}
+
+impl Body {
+    fn pose(model: &Model, sketch: &Sketch) -> Outcome<Self> {
+        let mut inference = Inference::new(model).map_err(Failure::model)?;
+        let vertex_count = inference.vertex_count();
+        let mut body = Self {
+            latent: vec![0.0; inference.latent_len()],
+            positions: vec![[0.0; 3]; vertex_count],
+            normals: vec![[0.0; 3]; vertex_count],
+            joints: vec![Vec3::ZERO; model.figure().joint_count()],
+            encode_s: 0.0,
+            decode_s: 0.0,
+        };
+        let start = Instant::now();
+        inference.encode(sketch, &mut body.latent).map_err(Failure::input)?;
+        body.encode_s = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        inference
+            .decode(&body.latent, &mut body.positions, &mut body.normals)
+            .map_err(Failure::model)?;
+        body.decode_s = start.elapsed().as_secs_f64();
+        inference.joints(&body.latent, &mut body.joints).map_err(Failure::model)?;
+        body.stand_on_ground();
+        Ok(body)
+    }
+
+    fn stand_on_ground(&mut self) {
+        let lowest = self.positions.iter().map(|p| p[1]).fold(f32::INFINITY, f32::min);
+        self.positions.iter_mut().for_each(|position| position[1] -= lowest);
+        self.joints.iter_mut().for_each(|joint| joint.y -= lowest);
+    }
+
+    fn to_json(&self, figure: &Figure) -> Value {
+        let joints: Map<String, Value> = figure
+            .joints
+            .iter()
+            .zip(&self.joints)
+            .map(|(joint, at)| (joint.name.clone(), json!(at.to_array())))
+            .collect();
+        json!({
+            "joints": joints,
+            "latent": self.latent,
+            "seconds": {"encode": self.encode_s, "decode": self.decode_s},
+        })
+    }
+}
+
+/// Where the body goes, and as what.
+enum Output<'a> {
+    Mesh(&'a Path),
+    Picture(&'a Path),
+}
+
+impl<'a> Output<'a> {
+    fn of(path: &'a Path) -> Outcome<Self> {
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+            return Ok(Self::Picture(path));
+        }
+        MeshFormat::of_path(path).map_err(Failure::output)?;
+        Ok(Self::Mesh(path))
+    }
+
+    fn write(&self, model: &Model, body: &Body) -> Outcome {
+        match *self {
+            Self::Mesh(path) => {
+                let mesh = ExportMesh {
+                    name: &model.figure().name,
+                    positions: &body.positions,
+                    normals: &body.normals,
+                    colors: model.colors(),
+                    triangles: model.triangles(),
+                };
+                save_mesh(&mesh, path).map_err(|error| match error {
+                    ExportError::Mesh(_) => Failure::model(error),
+                    other => Failure::output(other),
+                })
+            }
+            Self::Picture(path) => write_png(path, &picture(model, body)),
+        }
+    }
+}
+
+fn picture(model: &Model, body: &Body) -> image::RgbaImage {
+    let positions: Vec<Vec3> = body.positions.iter().copied().map(Vec3::from).collect();
+    let normals: Vec<Vec3> = body.normals.iter().copied().map(Vec3::from).collect();
+    let mesh = RenderMesh {
+        positions: &positions,
+        normals: &normals,
+        colors: model.colors(),
+        triangles: model.triangles(),
+    };
+    let ((width, height), (yaw_rad, pitch_rad)) = (PICTURE_PX, PICTURE_YAW_PITCH_RAD);
+    let camera = Camera::framing(&positions, yaw_rad, pitch_rad, width as f32 / height as f32);
+    render(&[mesh], &camera, width, height)
 }

@@ -1,0 +1,55 @@
+//! `stick3d bake`: the shipped bodies and pictures from their sources.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use anyhow::Context as _;
+use image::{ImageFormat, RgbaImage};
+use stick3d_model::files::write_atomically;
+use stick3d_train::bake::bake_human;
+use stick3d_train::pose::pose_sheet;
+
+use crate::args::BakeCommand;
+use crate::corpus::Corpus;
+use crate::failure::{Failure, Outcome};
+
+/// Cameras of the contact sheet: from the front and half from the side, degrees.
+const SHEET_VIEWS_DEG: [f32; 2] = [20.0, 80.0];
+/// Edge of one picture of the contact sheet, pixels.
+const SHEET_PICTURE_PX: u32 = 160;
+/// Poses in a row of the contact sheet.
+const SHEET_COLUMNS: u32 = 6;
+
+/// Runs `stick3d bake`.
+pub(crate) fn run(command: &BakeCommand) -> Outcome {
+    match command {
+        BakeCommand::Human { wheel, out } => {
+            let report = bake_human(wheel, out).map_err(Failure::input)?;
+            println!("{}: {report:?}", out.display());
+            Ok(())
+        }
+        BakeCommand::Poses { body, out } => {
+            let corpus = Corpus::read(body)?;
+            let sheet = pose_sheet(
+                &corpus.rig,
+                &corpus.controls,
+                &corpus.library,
+                &SHEET_VIEWS_DEG,
+                SHEET_PICTURE_PX,
+                SHEET_COLUMNS,
+            );
+            write_png(out, &sheet)?;
+            println!("{}: {} poses", out.display(), corpus.library.poses.len());
+            Ok(())
+        }
+    }
+}
+
+/// Writes a picture, whole or not at all.
+pub(crate) fn write_png(path: &Path, picture: &RgbaImage) -> Outcome {
+    let mut bytes = Cursor::new(Vec::new());
+    picture
+        .write_to(&mut bytes, ImageFormat::Png)
+        .context("cannot encode the picture")?;
+    write_atomically(path, bytes.get_ref()).map_err(Failure::output)
+}

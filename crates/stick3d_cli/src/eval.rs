@@ -1,0 +1,94 @@
+//! `stick3d eval`: how far a model's bodies are from the truth.
+
+use std::fmt::Write as _;
+
+use stick3d_model::Model;
+use stick3d_train::evaluate::{self, Drawn, EvalConfig, EvalInput, Report};
+use stick3d_train::training::Progress;
+
+use crate::args::EvalArguments;
+use crate::corpus::Corpus;
+use crate::failure::{Failure, Outcome};
+use crate::inputs;
+use crate::progress::Bar;
+
+/// Poses of the nearest-neighbour baseline: as many as the paper's data set has (section 4.1).
+const BASELINE_POSES: usize = 72;
+
+/// Seed of the sampled test poses; training derives its own from other numbers.
+const TEST_STREAM: u64 = 0x7e57;
+
+/// Runs `stick3d eval`.
+pub(crate) fn run(arguments: &EvalArguments) -> Outcome {
+    let model = inputs::model(arguments.model.as_deref())?;
+    let corpus = Corpus::read(&arguments.body)?;
+    let bar = Bar::new();
+    let report = measure(&model, &corpus, &EvalConfig::default(), &bar)?;
+    bar.clear();
+    if arguments.json {
+        let json = serde_json::to_string_pretty(&report).map_err(anyhow::Error::from)?;
+        println!("{json}");
+    } else {
+        println!("{}", table(&report));
+    }
+    Ok(())
+}
+
+/// Measures a model on sampled poses and on those of the library that it was not trained on.
+pub(crate) fn measure(
+    model: &Model,
+    corpus: &Corpus,
+    config: &EvalConfig,
+    progress: &dyn Progress,
+) -> Outcome<Report> {
+    let (trained_on, held_out) = corpus.split_of(model);
+    let mut baseline = corpus.poses(&trained_on);
+    baseline.truncate(BASELINE_POSES);
+    let input = EvalInput {
+        rig: &corpus.rig,
+        library: &baseline,
+        held_out: &corpus.poses(&held_out),
+        stream: corpus.stream(&trained_on, TEST_STREAM),
+    };
+    evaluate::evaluate(model, input, config, progress).map_err(Failure::model)
+}
+
+/// The report for people.
+pub(crate) fn table(report: &Report) -> String {
+    let test = &report.test;
+    let mut text = format!(
+        "{} sampled and {} library poses that were not trained on; nearest neighbour among {} meshes\n\n\
+         {:26} {:>10} {:>8} {:>9} {:>12} {:>9} {:>9}\n",
+        test.sampled_cases,
+        test.library_cases,
+        test.baseline_meshes,
+        "",
+        "vertex cm",
+        "p95 cm",
+        "MPJPE mm",
+        "PA-MPJPE mm",
+        "2D cm",
+        "bones %",
+    );
+    for (label, rows) in [("model", &report.model), ("nearest neighbour", &report.baseline)] {
+        // Writing into a String cannot fail.
+        let _ = writeln!(text, "{label}");
+        rows.iter().for_each(|row| write_row(&mut text, row));
+    }
+    text
+}
+
+fn write_row(text: &mut String, row: &Drawn) {
+    let all = &row.all;
+    let _ = writeln!(
+        text,
+        "  {:24} {:>10.2} {:>8.2} {:>9.1} {:>12.1} {:>9.2} {:>9.2}",
+        row.name,
+        all.vertex_mean_cm,
+        all.vertex_p95_cm,
+        all.mpjpe_mm,
+        all.pa_mpjpe_mm,
+        all.reprojection_cm,
+        all.bone_length_percent,
+    );
+}

@@ -1,0 +1,64 @@
+//! `stick3d train`: from a rig and its poses to a model file.
+
+use std::time::Instant;
+
+use anyhow::Context as _;
+use stick3d_figure::figure::Figure;
+use stick3d_train::evaluate::EvalConfig;
+use stick3d_train::training::{self, TrainConfig, TrainInput};
+
+use crate::args::TrainArguments;
+use crate::corpus::Corpus;
+use crate::failure::{Failure, Outcome};
+use crate::progress::Bar;
+use crate::{eval, inputs};
+
+/// What `--quick` divides bodies and epochs by.
+const QUICK: usize = 10;
+
+/// Runs `stick3d train`.
+pub(crate) fn run(arguments: &TrainArguments) -> Outcome {
+    let start = Instant::now();
+    let figure = match &arguments.figure {
+        Some(path) => Figure::from_ron(&inputs::text(path)?)
+            .map_err(|error| Failure::input(error).context(format!("cannot use {}", path.display())))?,
+        None => Figure::human().clone(),
+    };
+    let corpus = Corpus::read(&arguments.body)?;
+    let config = config(arguments);
+    let (trained_on, held_out) = corpus.split(config.seed);
+    let streams = |number: u64| corpus.stream(&trained_on, config.seed.rotate_left(32) ^ number);
+    let input = TrainInput {
+        figure: &figure,
+        rig: &corpus.rig,
+        library: &corpus.poses_both_ways(&trained_on),
+        streams: &streams,
+        held_out_poses: held_out.poses.iter().map(|pose| pose.name.clone()).collect(),
+    };
+    std::fs::create_dir_all(&arguments.work_dir)
+        .with_context(|| format!("cannot make the folder {}", arguments.work_dir.display()))
+        .map_err(Failure::output)?;
+    let bar = Bar::new();
+    let trained =
+        training::train(&input, &config, Some(&arguments.work_dir), !arguments.fresh, &bar)
+            .map_err(anyhow::Error::from)?;
+    let report = eval::measure(&trained.model, &corpus, &EvalConfig::default(), &bar)?;
+    bar.clear();
+    let model = training::with_metrics(trained.model, &report).map_err(Failure::model)?;
+    model.save(&arguments.out).map_err(Failure::output)?;
+    println!("{}", eval::table(&report));
+    println!("{} in {:.0} s", arguments.out.display(), start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+fn config(arguments: &TrainArguments) -> TrainConfig {
+    let mut config = TrainConfig { seed: arguments.seed, ..TrainConfig::human() };
+    if arguments.quick {
+        config.sampled_bodies /= QUICK;
+        config.basis.poses /= QUICK;
+        for stage in &mut config.stages {
+            stage.epochs = stage.epochs.div_ceil(QUICK);
+        }
+    }
+    config
+}
