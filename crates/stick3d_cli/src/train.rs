@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use anyhow::Context as _;
 use stick3d_figure::figure::Figure;
-use stick3d_train::evaluate::EvalConfig;
+use stick3d_model::Model;
+use stick3d_train::evaluate::{EvalConfig, Report};
 use stick3d_train::training::{self, TrainConfig, TrainInput};
 
 use crate::args::TrainArguments;
@@ -42,13 +43,24 @@ pub(crate) fn run(arguments: &TrainArguments) -> Outcome {
     let trained =
         training::train(&input, &config, Some(&arguments.work_dir), !arguments.fresh, &bar)
             .map_err(anyhow::Error::from)?;
-    let report = eval::measure(&trained.model, &corpus, &EvalConfig::default(), &bar)?;
+    let model = as_stored(&trained.model)?;
+    let report = eval::measure(&model, &corpus, &EvalConfig::default(), &bar)?;
     bar.clear();
-    let model = training::with_metrics(trained.model, &report).map_err(Failure::model)?;
-    model.save(&arguments.out).map_err(Failure::output)?;
+    with_metrics(model, &report)?.save(&arguments.out).map_err(Failure::output)?;
     println!("{}", eval::table(&report));
     println!("{} in {:.0} s", arguments.out.display(), start.elapsed().as_secs_f64());
     Ok(())
+}
+
+/// The model as it comes back from its file, where numbers are rounded: what is measured is what ships.
+fn as_stored(model: &Model) -> Outcome<Model> {
+    model.to_bytes().and_then(|bytes| Model::from_bytes(&bytes)).map_err(Failure::model)
+}
+
+fn with_metrics(model: Model, report: &Report) -> Outcome<Model> {
+    let mut parts = model.into_parts();
+    parts.metadata.metrics = serde_json::to_value(report).map_err(anyhow::Error::from)?;
+    Model::new(parts).map_err(Failure::model)
 }
 
 fn config(arguments: &TrainArguments) -> TrainConfig {

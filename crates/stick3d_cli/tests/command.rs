@@ -1,0 +1,163 @@
+//! The `stick3d` command as a person runs it: what it prints, what it writes, how it ends.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+const HUMAN_VERTICES: usize = 12_500;
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn sketch(name: &str) -> PathBuf {
+    workspace().join("assets/sketches").join(name)
+}
+
+fn stick3d() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_stick3d"))
+}
+
+fn pose(sketch: &Path, more: &[&str]) -> Output {
+    stick3d().arg("pose").arg("--sketch").arg(sketch).args(more).output().unwrap()
+}
+
+fn pose_standard_input(text: &str) -> Output {
+    let mut child = stick3d()
+        .args(["pose", "--json", "--sketch", "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+fn error_of(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn joint(json: &Value, name: &str) -> [f64; 3] {
+    let numbers = json["joints"][name].as_array().unwrap_or_else(|| panic!("no joint {name}"));
+    [0, 1, 2].map(|axis| numbers[axis].as_f64().unwrap())
+}
+
+#[test]
+fn json_tells_joints_latent_and_times() {
+    let output = pose(&sketch("arms_up.json"), &["--json"]);
+    assert!(output.status.success(), "{}", error_of(&output));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["joints"].as_object().unwrap().len(), 11);
+    assert_eq!(json["latent"].as_array().unwrap().len(), 256);
+    assert!(json["seconds"]["encode"].as_f64().unwrap() > 0.0);
+    assert!(json["seconds"]["decode"].as_f64().unwrap() > 0.0);
+    let [neck, abdomen] = ["neck", "abdomen"].map(|name| joint(&json, name));
+    assert!(neck[1] > abdomen[1] + 0.3, "he stands upright");
+    for hand in ["hand_r", "hand_l"] {
+        assert!(joint(&json, hand)[1] > neck[1] + 0.2, "{hand} is above the head");
+    }
+    assert!(joint(&json, "hand_r")[0] < joint(&json, "hand_l")[0], "his right is at the viewer's left");
+    for foot in ["foot_r", "foot_l"] {
+        assert!((-0.01..0.25).contains(&joint(&json, foot)[1]), "{foot} is near the ground");
+    }
+}
+
+#[test]
+fn every_format_is_written_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["out.glb", "out.obj", "out.ply", "out.off", "out.png"] {
+        let path = folder.path().join(name);
+        let output = pose(&sketch("walk.json"), &["--out", path.to_str().unwrap()]);
+        assert!(output.status.success(), "{name}: {}", error_of(&output));
+        assert!(output.stdout.is_empty(), "only --json prints");
+    }
+    let text = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    let starting = |text: &str, with: &str| text.lines().filter(|line| line.starts_with(with)).count();
+    assert_eq!(starting(&text("out.obj"), "v "), HUMAN_VERTICES);
+    assert!(text("out.ply").contains(&format!("element vertex {HUMAN_VERTICES}\n")));
+    assert!(text("out.off").lines().any(|line| line.starts_with(&format!("{HUMAN_VERTICES} 24996"))));
+    assert!(std::fs::read(folder.path().join("out.glb")).unwrap().starts_with(b"glTF"));
+    let picture = image::open(folder.path().join("out.png")).unwrap().to_rgb8();
+    let corner = *picture.get_pixel(0, 0);
+    let covered = picture.pixels().filter(|pixel| pixel.0.iter().zip(corner.0).any(|(a, b)| a.abs_diff(b) > 60));
+    assert!(covered.count() > 10_000, "the body is in the picture");
+}
+
+#[test]
+fn every_form_of_sketch_gives_the_same_kind_of_answer() {
+    for name in ["walk.json", "walk_strokes.json"] {
+        let output = pose(&sketch(name), &["--json"]);
+        assert!(output.status.success(), "{name}: {}", error_of(&output));
+    }
+    let text = std::fs::read_to_string(sketch("standing.json")).unwrap();
+    let output = pose_standard_input(&text);
+    assert!(output.status.success(), "{}", error_of(&output));
+}
+
+#[test]
+fn wrong_sketches_end_with_3_and_say_why() {
+    let cases = [
+        ("{", "line 1"),
+        (r#"{"figure":"dragon","joints":{"neck":[0,1]}}"#, "dragon"),
+        (r#"{"figure":"human","joints":{"nek":[0,1]}}"#, "neck"),
+        (r#"{"figure":"human","joints":{"neck":[0,1]}}"#, "forehead"),
+        (r#"{"figure":"human","joints":{"neck":[0,1e30]}}"#, "neck"),
+        (r#"{"figure":"human","path":[[0,0],[0,1]]}"#, "17"),
+    ];
+    for (text, expected) in cases {
+        let output = pose_standard_input(text);
+        assert_eq!(output.status.code(), Some(3), "{text}: {}", error_of(&output));
+        assert!(output.stdout.is_empty());
+        assert!(error_of(&output).contains(expected), "{text}: {}", error_of(&output));
+    }
+    let missing = pose(Path::new("no-such-file.json"), &["--json"]);
+    assert_eq!(missing.status.code(), Some(3));
+    assert!(error_of(&missing).contains("no-such-file.json"));
+}
+
+#[test]
+fn wrong_models_end_with_4() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = std::fs::read(workspace().join("assets/models/human.stick3d")).unwrap();
+    let mut flipped = good.clone();
+    let middle = flipped.len() / 2;
+    flipped[middle] ^= 0x10;
+    let cases: [(&str, &[u8]); 4] = [
+        ("empty", b""),
+        ("truncated", &good[..good.len() / 3]),
+        ("bit-flipped", &flipped),
+        ("foreign", b"{\"not\":\"a model\"}"),
+    ];
+    for (name, bytes) in cases {
+        let path = folder.path().join(name);
+        std::fs::File::create(&path).unwrap().write_all(bytes).unwrap();
+        let output = pose(&sketch("walk.json"), &["--json", "--model", path.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(4), "{name}: {}", error_of(&output));
+        assert!(error_of(&output).contains(name), "{name}: {}", error_of(&output));
+    }
+}
+
+#[test]
+fn unwritable_outputs_end_with_5_and_leave_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let nowhere = folder.path().join("no-such-folder/out.glb");
+    for path in [nowhere.to_str().unwrap(), "out.step"] {
+        let output = pose(&sketch("walk.json"), &["--out", path]);
+        assert_eq!(output.status.code(), Some(5), "{path}: {}", error_of(&output));
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn usage_errors_end_with_2_and_help_shows_an_example() {
+    let output = stick3d().args(["pose"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    for command in ["pose", "train", "eval", "bake"] {
+        let output = stick3d().args([command, "--help"]).output().unwrap();
+        let help = String::from_utf8(output.stdout).unwrap();
+        assert!(help.contains("Example") && help.contains("stick3d"), "{command}: {help}");
+    }
+}
