@@ -38,7 +38,16 @@ impl Progress for Bar {
     }
 
     fn epoch(&self, record: &LossRecord) {
-        self.note(&record.to_string());
+        let terms: Vec<String> =
+            record.terms.iter().map(|(name, value)| format!("{name} {value:.4}")).collect();
+        self.note(&format!(
+            "{:12} {:3}/{}  loss {:.4}  {}",
+            record.stage.label(),
+            record.epoch + 1,
+            record.epochs,
+            record.loss,
+            terms.join("  ")
+        ));
     }
 
     fn note(&self, text: &str) {
