@@ -18,9 +18,10 @@ pub enum Architecture {
         /// Width of every hidden layer. The paper does not state it.
         hidden: usize,
     },
-    /// Encoder3D reads, and Decoder writes, the coefficients of a fixed basis that spans the posed meshes.
+    /// Encoder3D reads, and Decoder writes, the few numbers that the posed meshes of a figure consist of: coefficients of
+    /// a fixed basis, or columns of its bones' rotations.
     Basis {
-        /// Number of basis columns; each has an x, a y and a z coefficient.
+        /// How many vectors these are; each has an x, a y and a z.
         rank: usize,
         /// Widths of the hidden layers of Encoder3D.
         encoder3d: Vec<usize>,

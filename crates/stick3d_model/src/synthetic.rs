@@ -4,7 +4,7 @@ use stick3d_figure::figure::Figure;
 use stick3d_figure::regressor::JointRegressor;
 
 use crate::architecture::Architecture;
-use crate::final_layer::{BasisLayer, DenseLayer, FinalLayer, SkinnedLayer, SkinnedParts};
+use crate::final_layer::{BasisLayer, DenseLayer, FinalLayer, Rotations, SkinnedLayer, SkinnedParts};
 use crate::metadata::{FORMAT_VERSION, Metadata, Normalisation, TOOL_VERSION, topology_hash};
 use crate::model::{Model, ModelParts};
 use crate::weights::{Encoder3dWeights, LinearWeights, MlpWeights};
@@ -18,6 +18,8 @@ pub(crate) enum Kind {
     Basis,
     /// A skinned one.
     Skinned,
+    /// A skinned one whose head gives rotations.
+    Rotations,
 }
 
 const RANK: usize = 5;
@@ -36,6 +38,12 @@ pub(crate) fn model(kind: Kind) -> Model {
     let (vertex_count, triangles) = torus();
     let architecture = match kind {
         Kind::Dense => Architecture::Paper { hidden: 7 },
+        Kind::Rotations => Architecture::Basis {
+            rank: 6,
+            encoder3d: vec![12],
+            head: vec![10],
+            encoder2d: vec![16],
+        },
         Kind::Basis | Kind::Skinned => Architecture::Basis {
             rank: RANK,
             encoder3d: vec![12],
@@ -101,8 +109,11 @@ fn final_layer(kind: Kind, len: usize, vertex_count: usize, numbers: &mut Number
             let columns = (0..RANK * vertex_count).map(|_| numbers.next()).collect();
             FinalLayer::Basis(BasisLayer::new(vertex_count, columns).expect(sound))
         }
-        Kind::Skinned => {
+        Kind::Skinned | Kind::Rotations => {
             let bone_count = 4;
+            let turning = Rotations { bone_count: 3, halves: vec![[0, 1], [2, 1]] };
+            let rotations = (kind == Kind::Rotations).then_some(turning);
+            let rank = rotations.as_ref().map_or(RANK, Rotations::feature_columns);
             let row = |v: usize| (0..=(v % 3)).map(move |i| ((v + i) % bone_count) as u16);
             let offsets = (0..=vertex_count)
                 .map(|v| (0..v).map(|v| v % 3 + 1).sum::<usize>() as u32)
@@ -116,7 +127,8 @@ fn final_layer(kind: Kind, len: usize, vertex_count: usize, numbers: &mut Number
                 weights: bones.iter().map(|_| numbers.next().abs()).collect(),
                 bones,
                 bone_count,
-                expansion: (0..RANK * 4 * bone_count).map(|_| numbers.next()).collect(),
+                rotations,
+                expansion: (0..rank * 4 * bone_count).map(|_| numbers.next()).collect(),
             };
             FinalLayer::Skinned(SkinnedLayer::new(parts).expect(sound))
         }

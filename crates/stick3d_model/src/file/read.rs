@@ -8,7 +8,7 @@ use sha2::Digest as _;
 use stick3d_figure::regressor::JointRegressor;
 
 use super::{ENTRY, ModelError, add_to_checksum, checksum_of_metadata};
-use crate::final_layer::{BasisLayer, DenseLayer, FinalLayer, SkinnedLayer, SkinnedParts};
+use crate::final_layer::{BasisLayer, DenseLayer, FinalLayer, Rotations, SkinnedLayer, SkinnedParts};
 use crate::metadata::{FORMAT_VERSION, Metadata, hex};
 use crate::model::ModelParts;
 use crate::weights::{Encoder3dWeights, LinearWeights, MlpWeights};
@@ -218,7 +218,9 @@ impl Arrays<'_> {
         let (_, rest) = self.f32("final.skinned.rest", 2)?;
         let (shape, expansion) = self.f32("final.skinned.expansion", 2)?;
         let bones = self.get("final.skinned.bones", Dtype::U16, 1)?;
+        let rotations = self.rotations(shape[0])?;
         Ok(SkinnedLayer::new(SkinnedParts {
+            rotations,
             rest: self.rows("final.skinned.rest", Dtype::F32, rest)?,
             offsets: self.u32("final.skinned.offsets", 1)?,
             bones: numbers(bones.data(), u16::from_le_bytes),
@@ -226,6 +228,18 @@ impl Arrays<'_> {
             bone_count: shape[1] / 4,
             expansion,
         })?)
+    }
+
+    /// The rotations of a skinned layer whose expansion has `rank` rows.
+    fn rotations(&self, rank: usize) -> Result<Option<Rotations>, ModelError> {
+        const NAME: &str = "final.skinned.halves";
+        if !self.has(NAME) {
+            return Ok(None);
+        }
+        let flat = numbers(self.get(NAME, Dtype::U16, 2)?.data(), u16::from_le_bytes);
+        let halves: Vec<[u16; 2]> = self.rows(NAME, Dtype::U16, flat)?;
+        let bone_count = (rank / 3).saturating_sub(halves.len());
+        Ok(Some(Rotations { bone_count, halves }))
     }
 
     fn regressor(&self) -> Result<JointRegressor, ModelError> {

@@ -8,10 +8,10 @@ use crate::metadata::FORMAT_VERSION;
 use crate::model::Model;
 use crate::synthetic::{Kind, model};
 
-const KINDS: [Kind; 3] = [Kind::Dense, Kind::Basis, Kind::Skinned];
+const KINDS: [Kind; 4] = [Kind::Dense, Kind::Basis, Kind::Skinned, Kind::Rotations];
 
 fn bytes() -> Vec<u8> {
-    model(Kind::Skinned).to_bytes().unwrap()
+    model(Kind::Rotations).to_bytes().unwrap()
 }
 
 fn read(bytes: &[u8]) -> Result<Model, ModelError> {

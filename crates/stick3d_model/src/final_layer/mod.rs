@@ -2,10 +2,13 @@
 
 mod basis;
 mod dense;
+mod rotations;
 mod skinned;
 
 pub use basis::BasisLayer;
 pub use dense::DenseLayer;
+pub use rotations::Rotations;
+pub(crate) use rotations::{LEAST_COSINE, SMALLEST_SQUARE};
 pub use skinned::{SkinnedLayer, SkinnedParts};
 
 use glam::Vec3;
@@ -25,6 +28,7 @@ pub enum FinalLayer {
 /// Memory that evaluating a final layer needs, made once.
 #[derive(Debug, Clone, Default)]
 pub struct FinalScratch {
+    features: Vec<f32>,
     axis: Vec<f32>,
     bones: Vec<[f32; 16]>,
 }
@@ -56,7 +60,7 @@ impl FinalLayer {
         match self {
             Self::Dense(layer) => layer.linear().input_len,
             Self::Basis(layer) => 3 * layer.rank(),
-            Self::Skinned(layer) => 3 * layer.rank(),
+            Self::Skinned(layer) => layer.coefficient_len(),
         }
     }
 
@@ -76,11 +80,11 @@ impl FinalLayer {
         match self {
             Self::Dense(layer) => FinalScratch {
                 axis: vec![0.0; layer.linear().output_len],
-                bones: vec![],
+                ..FinalScratch::default()
             },
             Self::Basis(layer) => FinalScratch {
                 axis: vec![0.0; layer.vertex_count()],
-                bones: vec![],
+                ..FinalScratch::default()
             },
             Self::Skinned(layer) => layer.scratch(),
         }
@@ -117,8 +121,45 @@ impl FinalLayer {
         }
     }
 
-    /// The layer as a plain matrix, where it is linear: `[vertex_count][rank]`, the same for x, y and z.
-    /// `None` for the dense layer, which is not linear.
+    /// What the layer is linear in: the coefficients themselves, or the rotations made of them.
+    ///
+    /// # Shapes
+    /// - `coefficients`: `[coefficient_len]`
+    /// - result: `[3][matrix_columns]`, or `[coefficient_len]` for the dense layer
+    ///
+    /// # Panics
+    /// When `coefficients` has another length, or `scratch` was made by a layer of another shape.
+    pub fn features<'a>(&self, coefficients: &'a [f32], scratch: &'a mut FinalScratch) -> &'a [f32] {
+        match self.rotations() {
+            Some(rotations) => {
+                rotations.expand(coefficients, &mut scratch.features);
+                &scratch.features
+            }
+            None => coefficients,
+        }
+    }
+
+    /// Which rotations the head gives, where it gives rotations.
+    #[must_use]
+    pub fn rotations(&self) -> Option<&Rotations> {
+        match self {
+            Self::Skinned(layer) => layer.parts().rotations.as_ref(),
+            Self::Dense(_) | Self::Basis(_) => None,
+        }
+    }
+
+    /// Columns of [`FinalLayer::matrix`]; 0 for the dense layer.
+    #[must_use]
+    pub fn matrix_columns(&self) -> usize {
+        match self {
+            Self::Dense(_) => 0,
+            Self::Basis(layer) => layer.rank(),
+            Self::Skinned(layer) => layer.rank(),
+        }
+    }
+
+    /// What the layer does to its [features](FinalLayer::features), as a plain matrix: `[vertex_count][matrix_columns]`,
+    /// the same for x, y and z. `None` for the dense layer, which is not linear.
     #[must_use]
     pub fn matrix(&self) -> Option<Vec<f32>> {
         match self {
@@ -129,7 +170,7 @@ impl FinalLayer {
     }
 
     /// The coefficients that come closest to a mesh, for layers whose columns are orthonormal under the mean over
-    /// vertices (as the trainer makes them); `None` for the dense layer.
+    /// vertices; `None` for layers that are not linear in their coefficients.
     ///
     /// # Panics
     /// When `positions` has another length than [`FinalLayer::vertex_count`].
@@ -143,7 +184,7 @@ impl FinalLayer {
         match self {
             Self::Dense(_) => None,
             Self::Basis(layer) => Some(layer.project(positions)),
-            Self::Skinned(layer) => Some(layer.project(positions)),
+            Self::Skinned(layer) => layer.project(positions),
         }
     }
 }

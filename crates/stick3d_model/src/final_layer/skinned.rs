@@ -7,7 +7,7 @@
 
 use glam::Vec3;
 
-use super::{FinalLayerError, FinalScratch, expect_len};
+use super::{FinalLayerError, FinalScratch, Rotations, expect_len};
 use crate::kernels;
 
 /// The arrays of a [`SkinnedLayer`].
@@ -23,8 +23,10 @@ pub struct SkinnedParts {
     pub weights: Vec<f32>,
     /// How many bones there are, helpers included.
     pub bone_count: usize,
-    /// `[rank][4 · bone_count]`: how one coefficient moves the bones. A bone's four entries multiply its x, y, z and 1.
+    /// `[rank][4 · bone_count]`: how one feature (a coefficient, or a column of a rotation) moves the bones. A bone's four entries multiply its x, y, z and 1.
     pub expansion: Vec<f32>,
+    /// Where the head gives rotations: which. Else it gives the coefficients themselves.
+    pub rotations: Option<Rotations>,
 }
 
 /// A sparse basis: `positions[v] = Σ_b weight_vb · A_b · [rest_v; 1]` with `A = expansion · coefficients`.
@@ -47,6 +49,7 @@ impl SkinnedLayer {
             weights,
             bone_count,
             expansion,
+            rotations,
         } = &parts;
         expect_len("offsets", offsets.len(), rest.len() + 1)?;
         expect_len("weights", weights.len(), bones.len())?;
@@ -83,6 +86,10 @@ impl SkinnedLayer {
             0,
         )?;
         let rank = expansion.len() / row_len;
+        if let Some(rotations) = rotations {
+            rotations.validate()?;
+            expect_len("rotation columns", rotations.feature_columns(), rank)?;
+        }
         Ok(Self { parts, rank })
     }
 
@@ -92,7 +99,13 @@ impl SkinnedLayer {
         &self.parts
     }
 
-    /// How many coefficients each axis has.
+    /// How many numbers the head gives.
+    #[must_use]
+    pub fn coefficient_len(&self) -> usize {
+        3 * self.parts.rotations.as_ref().map_or(self.rank, Rotations::code_columns)
+    }
+
+    /// How many columns the expansion has.
     #[must_use]
     pub fn rank(&self) -> usize {
         self.rank
@@ -123,6 +136,7 @@ impl SkinnedLayer {
     pub(super) fn scratch(&self) -> FinalScratch {
         let bones = self.parts.bone_count;
         FinalScratch {
+            features: vec![0.0; 3 * self.rank],
             axis: vec![0.0; 4 * bones],
             bones: vec![[0.0; 16]; bones],
         }
@@ -177,7 +191,10 @@ impl SkinnedLayer {
         moments
     }
 
-    pub(super) fn project(&self, positions: &[Vec3]) -> Vec<f32> {
+    pub(super) fn project(&self, positions: &[Vec3]) -> Option<Vec<f32>> {
+        if self.parts.rotations.is_some() {
+            return None;
+        }
         let row_len = 4 * self.parts.bone_count;
         let moments = self.moments(positions);
         let mut coefficients = vec![0.0; 3 * self.rank];
@@ -191,7 +208,7 @@ impl SkinnedLayer {
                 coefficients[axis * self.rank + j] = (sum / self.vertex_count() as f64) as f32;
             }
         }
-        coefficients
+        Some(coefficients)
     }
 
     pub(super) fn evaluate(
@@ -200,9 +217,16 @@ impl SkinnedLayer {
         scratch: &mut FinalScratch,
         positions: &mut [[f32; 3]],
     ) {
-        for (axis, coefficients) in coefficients.chunks_exact(self.rank).enumerate() {
+        let features = match &self.parts.rotations {
+            Some(rotations) => {
+                rotations.expand(coefficients, &mut scratch.features);
+                scratch.features.as_slice()
+            }
+            None => coefficients,
+        };
+        for (axis, features) in features.chunks_exact(self.rank).enumerate() {
             scratch.axis.fill(0.0);
-            kernels::accumulate(coefficients, &self.parts.expansion, &mut scratch.axis);
+            kernels::accumulate(features, &self.parts.expansion, &mut scratch.axis);
             for (bone, entries) in scratch.bones.iter_mut().zip(scratch.axis.chunks_exact(4)) {
                 for (column, entry) in entries.iter().enumerate() {
                     bone[4 * column + axis] = *entry;

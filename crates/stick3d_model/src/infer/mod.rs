@@ -66,7 +66,7 @@ struct Perceptron {
 /// From coefficients to joints.
 #[derive(Debug, Clone)]
 enum JointMap {
-    /// The joints as linear functions of the coefficients: `[joint][rank]`.
+    /// The joints as linear functions of the final layer's features: `[joint][rank]`.
     Linear { rows: Vec<f32>, rank: usize },
     /// The final layer is not linear: through the whole mesh.
     Mesh {
@@ -184,10 +184,11 @@ impl Inference {
         let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
         match &mut self.joints {
             JointMap::Linear { rows, rank } => {
+                let features = self.final_layer.features(coefficients, &mut self.final_scratch);
                 for (joint, row) in joints.iter_mut().zip(rows.chunks_exact(*rank)) {
                     let along = |axis: usize| -> f32 {
                         row.iter()
-                            .zip(&coefficients[axis * *rank..])
+                            .zip(&features[axis * *rank..])
                             .map(|(a, b)| a * b)
                             .sum()
                     };
@@ -258,7 +259,7 @@ impl JointMap {
                 positions,
             };
         };
-        let rank = model.final_layer().coefficient_len() / 3;
+        let rank = model.final_layer().matrix_columns();
         let mut rows = vec![0.0; regressor.joint_count() * rank];
         for (out, row) in rows.chunks_exact_mut(rank).zip(&regressor.rows) {
             for (vertex, weight) in row {

@@ -9,7 +9,7 @@ use super::*;
 use crate::network::{Decoder, Encoder2d, Encoder3d};
 use crate::synthetic::{Kind, model};
 
-const KINDS: [Kind; 3] = [Kind::Dense, Kind::Basis, Kind::Skinned];
+const KINDS: [Kind; 4] = [Kind::Dense, Kind::Basis, Kind::Skinned, Kind::Rotations];
 
 fn row(numbers: &[f32], device: &Device) -> Tensor<2> {
     Tensor::from_data(

@@ -5,7 +5,7 @@ use burn::module::Module;
 use burn::nn::{Linear, LinearConfig};
 use burn::tensor::{Device, Tensor, TensorData};
 
-use super::{Mlp, MlpConfig, linear_from_weights};
+use super::{Mlp, MlpConfig, linear_from_weights, rotation_features};
 use crate::architecture::NetworkSizes;
 use crate::final_layer::FinalLayer;
 use crate::weights::MlpWeights;
@@ -49,6 +49,10 @@ pub struct TanhFinal {
 pub struct LinearFinal {
     /// `[rank, vertex_count]`, not trained.
     columns: Tensor<2>,
+    /// How many bones turn; 0 where the coefficients are used as they are.
+    turning_bones: usize,
+    /// Pairs of bones whose half-way rotations are used too.
+    halves: Vec<usize>,
 }
 
 impl DecoderConfig {
@@ -112,9 +116,13 @@ impl FinalModule {
             });
         }
         let matrix = layer.matrix().unwrap_or_default();
-        let shape = [layer.vertex_count(), layer.coefficient_len() / 3];
+        let shape = [layer.vertex_count(), layer.matrix_columns()];
         let columns = Tensor::<2>::from_data(TensorData::new(matrix, shape), device).transpose();
-        Self::Linear(LinearFinal { columns })
+        let (turning_bones, halves) = layer.rotations().map_or((0, vec![]), |rotations| {
+            let halves = rotations.halves.as_flattened().iter().map(|bone| usize::from(*bone)).collect();
+            (rotations.bone_count, halves)
+        });
+        Self::Linear(LinearFinal { columns, turning_bones, halves })
     }
 
     /// # Shapes
@@ -131,9 +139,11 @@ impl FinalModule {
             }
             Self::Linear(layer) => {
                 let [_, vertices] = layer.columns.dims();
-                let by_axis = coefficients
-                    .reshape([3 * batch, len / 3])
-                    .matmul(layer.columns.clone());
+                let features = match layer.turning_bones {
+                    0 => coefficients.reshape([3 * batch, len / 3]),
+                    bones => rotation_features(coefficients, bones, &layer.halves),
+                };
+                let by_axis = features.matmul(layer.columns.clone());
                 by_axis.reshape([batch, 3, vertices]).swap_dims(1, 2)
             }
         }

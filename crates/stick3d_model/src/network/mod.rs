@@ -4,11 +4,13 @@ mod decoder;
 mod encoder2d;
 mod encoder3d;
 mod mlp;
+mod rotations;
 
 pub use decoder::{Decoder, DecoderConfig, FinalModule, LinearFinal, TanhFinal};
 pub use encoder2d::{Encoder2d, Encoder2dConfig};
 pub use encoder3d::{Encoder3d, Encoder3dConfig};
 pub use mlp::{Mlp, MlpConfig, linear_from_weights, linear_to_weights};
+pub use rotations::rotation_features;
 
 use burn::tensor::Tensor;
 

@@ -1,29 +1,30 @@
-//! The basis of a rigged figure's posed meshes: sparse columns, orthonormal coefficients.
+//! The shape of a rigged figure: from the rotations of its bones to its vertices, linear and sparse.
 //!
-//! A posed mesh is close to `Φ · C`: `Φ` the sparse columns of [`SkinnedLayer`], `C` one affine 3×4 per bone. The least
-//! squares problem for `C` is whitened by the Gram matrix of `Φ`, and rotated to principal axes; the leading ones are the
-//! coefficients `a = Ψᵀ · mesh / N`, with `Ψ = Φ · E` orthonormal under the mean over the vertices. So `|a - b|²` is the mean
-//! squared distance between the vertices of two meshes in the basis, and a rotation of the mesh is one of `a`.
-//! `Φ` is centred first: every mesh of the basis has its root joint at the origin exactly.
+//! A posed mesh is close to `Φ · C`: `Φ` the sparse columns of [`SkinnedLayer`], `C` one affine 3×4 per bone. Linear blend
+//! skinning says what `C` is for given rotations `F` of the bones: `C = E · F`, exactly. The rig's own skinning keeps the
+//! volume that blending loses; what it differs by is fitted to posed meshes by least squares, with helper bones between
+//! neighbouring bones among the columns of `Φ`, and rotations half way between them among those of `F`.
+//!
+//! `Φ` is centred first: whatever the rotations, the figure's root joint is at the origin.
 
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use stick3d_figure::regressor::JointRegressor;
-use stick3d_model::final_layer::{FinalLayer, FinalLayerError, SkinnedLayer, SkinnedParts};
+use stick3d_model::final_layer::{
+    FinalLayer, FinalLayerError, Rotations, SkinnedLayer, SkinnedParts,
+};
 
-use super::InfluenceTable;
-use crate::rig::Rig;
+use super::{InfluenceTable, posed, rounded};
+use crate::rig::{Pose, Rig};
 
 /// How a basis is made.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BasisConfig {
-    /// How many coefficients a mesh has along each axis.
-    pub rank: usize,
-    /// The most helper bones.
+    /// The most helper bones, and rotations half way between two bones.
     pub helpers: usize,
-    /// How many poses the principal axes come from.
+    /// How many poses the fit is made on.
     pub poses: usize,
 }
 
@@ -31,28 +32,26 @@ pub struct BasisConfig {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BasisError {
-    /// Fewer independent columns than coefficients wanted.
-    #[error("the rig spans only {found} independent columns, a rank of {wanted} was asked for; lower the rank")]
-    Rank {
-        /// Asked for.
-        wanted: usize,
-        /// There are.
-        found: usize,
-    },
     /// No poses.
-    #[error("no poses to find the principal axes of the meshes with; give at least one")]
+    #[error("no poses to fit the skin to; give at least one")]
     NoPoses,
+    /// The equations have no solution.
+    #[error("the skin cannot be fitted: the poses' rotations are degenerate")]
+    Degenerate,
     /// The layer's arrays do not fit together.
     #[error(transparent)]
     Layer(#[from] FinalLayerError),
 }
 
-/// A basis, and how to find a mesh's coefficients in it.
+/// A final layer that turns rotations into vertices, and how to find a pose's numbers for it.
 #[derive(Debug, Clone)]
 pub struct SkinBasis {
     layer: FinalLayer,
-    rank: usize,
-    /// `[joint][rank]`: the joints as linear functions of the coefficients.
+    rotations: Rotations,
+    rig_bones: Vec<usize>,
+    /// `[vertex][feature column]`.
+    matrix: Vec<f32>,
+    /// `[joint][feature column]`: the joints as linear functions of the features.
     joint_rows: Vec<f32>,
 }
 
@@ -68,7 +67,7 @@ pub struct BasisFit {
 }
 
 impl SkinBasis {
-    /// The basis of a rig for meshes like `meshes`, which are centred on the joint `root` of the regressor.
+    /// The basis of a rig, fitted to meshes in `poses`, centred on the joint `root` of the regressor.
     ///
     /// # Errors
     /// [`BasisError`].
@@ -77,83 +76,122 @@ impl SkinBasis {
         regressor: &JointRegressor,
         root: usize,
         config: BasisConfig,
-        meshes: impl ParallelIterator<Item = Vec<Vec3>>,
+        poses: &[Pose],
     ) -> Result<Self, BasisError> {
         let table = InfluenceTable::new(rig, config.helpers);
-        let probe = SkinnedLayer::new(parts(rig, &table, vec![0.0; 4 * table.bone_count]))?;
-        let whitening = Whitening::new(rig, &table, &regressor.rows[root]);
+        let rotations = Rotations {
+            bone_count: table.rig_bones.len(),
+            halves: table.helpers.iter().map(|(a, b)| [*a, *b]).collect(),
+        };
+        let probe = SkinnedLayer::new(parts(rig, &table, vec![0.0; 4 * table.bone_count], None))?;
+        let skin = CentredSkin::new(rig, &table, &regressor.rows[root]);
         let count = rig.mesh.positions.len() as f64;
-        let whitened: Vec<DMatrix<f64>> = meshes
-            .map(|mesh| {
+        let samples: Vec<(DMatrix<f64>, DMatrix<f64>)> = poses
+            .par_iter()
+            .map(|pose| {
+                let mut mesh = vec![];
+                posed(rig, regressor, root, pose, &mut mesh);
                 let moments = probe.moments(&mesh);
                 let moments = DMatrix::from_fn(moments.len(), 3, |i, axis| moments[i][axis] / count);
-                whitening.columns.tr_mul(&moments)
+                (skin.whitened(&moments), features(rig, &rotations, &table.rig_bones, pose))
             })
             .collect();
-        if whitened.is_empty() {
-            return Err(BasisError::NoPoses);
-        }
-        let expansion = whitening.expansion(&principal_axes(&whitened, config.rank)?);
-        let layer = FinalLayer::Skinned(SkinnedLayer::new(parts(rig, &table, expansion))?);
-        Ok(Self::new(layer, regressor))
-    }
-
-    fn new(layer: FinalLayer, regressor: &JointRegressor) -> Self {
-        let rank = layer.coefficient_len() / 3;
+        let blended = skin.centring.clone() * blend_skinning(rig, &table, rotations.feature_columns());
+        let expansion = skin.corrected(blended, &samples)?;
+        // Column-major storage is the order wanted: one row of the layer's expansion per feature.
+        let expansion = expansion.as_slice().iter().map(|x| *x as f32).collect();
+        let parts = parts(rig, &table, expansion, Some(rotations.clone()));
+        let layer = FinalLayer::Skinned(SkinnedLayer::new(parts)?);
         let matrix = layer.matrix().unwrap_or_default();
-        let joint_rows = regressor
-            .rows
-            .iter()
-            .flat_map(|row| {
-                (0..rank).map(|j| row.iter().map(|&(v, weight)| weight * matrix[v as usize * rank + j]).sum())
-            })
-            .collect();
-        Self { layer, rank, joint_rows }
+        let columns = layer.matrix_columns();
+        let joint_row = |row: &Vec<(u32, f32)>| -> Vec<f32> {
+            let entry = |j: usize| row.iter().map(|&(v, w)| w * matrix[v as usize * columns + j]).sum();
+            (0..columns).map(entry).collect()
+        };
+        let joint_rows = regressor.rows.iter().flat_map(joint_row).collect();
+        Ok(Self { layer, rotations, rig_bones: table.rig_bones, matrix, joint_rows })
     }
 
-    /// The final layer that turns coefficients into vertices.
+    /// The final layer that turns codes into vertices.
     #[must_use]
     pub fn layer(&self) -> &FinalLayer {
         &self.layer
     }
 
-    /// Coefficients along each axis.
+    /// Which rotations a code consists of.
     #[must_use]
-    pub fn rank(&self) -> usize {
-        self.rank
+    pub fn rotations(&self) -> &Rotations {
+        &self.rotations
     }
 
-    /// `[joint][rank]`: the joints as linear functions of the coefficients.
+    /// How many vectors a code has.
+    #[must_use]
+    pub fn code_columns(&self) -> usize {
+        self.rotations.code_columns()
+    }
+
+    /// `[vertex][feature column]`: the vertices as linear functions of the features.
+    #[must_use]
+    pub fn matrix(&self) -> &[f32] {
+        &self.matrix
+    }
+
+    /// `[joint][feature column]`: the joints as linear functions of the features.
     #[must_use]
     pub fn joint_rows(&self) -> &[f32] {
         &self.joint_rows
     }
 
-    /// The coefficients `[3][rank]` that come closest to a centred mesh.
+    /// The numbers `[3][code_columns]` of a pose: what the networks encode and decode.
     #[must_use]
-    pub fn project(&self, mesh: &[Vec3]) -> Vec<f32> {
-        self.layer.project(mesh).unwrap_or_default()
+    pub fn code(&self, rig: &Rig, pose: &Pose) -> Vec<f32> {
+        self.rotations.code(&bone_matrices(rig, &self.rig_bones, pose))
     }
 
-    /// How far meshes are from their images in the basis.
+    /// The joints of a code, metres, the root joint at the origin.
     #[must_use]
-    pub fn measure(&self, meshes: &[Vec<Vec3>]) -> BasisFit {
+    pub fn joints(&self, code: &[f32]) -> Vec<Vec3> {
+        let columns = self.rotations.feature_columns();
+        let mut features = vec![0.0; 3 * columns];
+        self.rotations.expand(code, &mut features);
+        let joint = |row: &[f32]| {
+            let along = |axis: usize| -> f32 {
+                row.iter().zip(&features[axis * columns..]).map(|(a, b)| a * b).sum()
+            };
+            Vec3::new(along(0), along(1), along(2))
+        };
+        self.joint_rows.chunks_exact(columns).map(joint).collect()
+    }
+
+    /// How far posed meshes are from their images.
+    #[must_use]
+    pub fn measure(&self, rig: &Rig, regressor: &JointRegressor, root: usize, poses: &[Pose]) -> BasisFit {
         let mut scratch = self.layer.scratch();
         let mut image = vec![[0.0; 3]; self.layer.vertex_count()];
-        let mut distances: Vec<f32> = vec![];
-        for mesh in meshes {
-            self.layer.evaluate(&self.project(mesh), &mut scratch, &mut image);
+        let (mut mesh, mut distances) = (vec![], vec![]);
+        for pose in poses {
+            posed(rig, regressor, root, pose, &mut mesh);
+            self.layer.evaluate(&self.code(rig, pose), &mut scratch, &mut image);
             distances.extend(mesh.iter().zip(&image).map(|(a, b)| a.distance(Vec3::from(*b))));
         }
         distances.sort_by(f32::total_cmp);
         let last = distances.len().saturating_sub(1);
         let at = |i: usize| distances.get(i).copied().map_or(0.0, f64::from);
-        let mean_m = distances.iter().copied().map(f64::from).sum::<f64>() / distances.len().max(1) as f64;
-        BasisFit { mean_m, p99_m: at(last * 99 / 100), max_m: at(last) }
+        let sum: f64 = distances.iter().copied().map(f64::from).sum();
+        BasisFit {
+            mean_m: rounded(sum / distances.len().max(1) as f64),
+            p99_m: rounded(at(last * 99 / 100)),
+            max_m: rounded(at(last)),
+        }
     }
 }
 
-fn parts(rig: &Rig, table: &InfluenceTable, expansion: Vec<f32>) -> SkinnedParts {
+fn parts(
+    rig: &Rig,
+    table: &InfluenceTable,
+    expansion: Vec<f32>,
+    rotations: Option<Rotations>,
+) -> SkinnedParts {
     let ends = table.rows.iter().scan(0_u32, |end, row| {
         *end += row.len() as u32;
         Some(*end)
@@ -166,18 +204,63 @@ fn parts(rig: &Rig, table: &InfluenceTable, expansion: Vec<f32>) -> SkinnedParts
         weights,
         bone_count: table.bone_count,
         expansion,
+        rotations,
     }
 }
 
-/// What turns moments `Φᵀ · mesh / N` into orthonormal coefficients.
-struct Whitening {
+fn bone_matrices(rig: &Rig, rig_bones: &[usize], pose: &Pose) -> Vec<Mat3> {
+    let posed = rig.bone_transforms(pose);
+    rig_bones.iter().map(|bone| Mat3::from_quat(posed[*bone].0)).collect()
+}
+
+/// The features of a pose, `[feature column][axis]`.
+fn features(rig: &Rig, rotations: &Rotations, rig_bones: &[usize], pose: &Pose) -> DMatrix<f64> {
+    let columns = rotations.feature_columns();
+    let mut flat = vec![0.0; 3 * columns];
+    rotations.expand(&rotations.code(&bone_matrices(rig, rig_bones, pose)), &mut flat);
+    DMatrix::from_fn(columns, 3, |j, axis| f64::from(flat[axis * columns + j]))
+}
+
+/// Linear blend skinning as a matrix `[4 · bones][features]`: a bone's affine map turns about its head, which hangs on the
+/// bones above it.
+fn blend_skinning(rig: &Rig, table: &InfluenceTable, columns: usize) -> DMatrix<f64> {
+    let bones = &rig.skeleton.bones;
+    let number = |bone: usize| table.rig_bones.iter().position(|known| *known == bone);
+    let mut matrix = DMatrix::zeros(4 * table.bone_count, columns);
+    for (index, bone) in table.rig_bones.iter().copied().enumerate() {
+        for j in 0..3 {
+            matrix[(4 * index + j, 3 * index + j)] = 1.0;
+            matrix[(4 * index + 3, 3 * index + j)] = -f64::from(bones[bone].head[j]);
+        }
+        let mut child = bone;
+        while let Some(parent) = bones[child].parent {
+            if let Some(above) = number(parent) {
+                for j in 0..3 {
+                    matrix[(4 * index + 3, 3 * above + j)] += f64::from(bones[child].head[j] - bones[parent].head[j]);
+                }
+            }
+            child = parent;
+        }
+    }
+    matrix
+}
+
+/// The sparse columns of a skin, centred on the root joint, in coordinates in which they are orthonormal under the mean
+/// over the vertices.
+struct CentredSkin {
+    /// `ΦᵀΦ / N`.
+    gram: DMatrix<f64>,
+    /// `Z` with `Φ · Z` centred.
+    centring: DMatrix<f64>,
     /// `Z · U · Λ^-1/2`: centring, then the inverse root of the centred Gram matrix where it has one.
     columns: DMatrix<f64>,
 }
 
-impl Whitening {
+impl CentredSkin {
     /// Directions whose variance is below this share of the largest are noise.
     const LEAST_SHARE: f64 = 1e-9;
+    /// Pulls the fitted difference from blend skinning toward none, as a share of the features' own variance.
+    const RIDGE: f64 = 1e-4;
 
     fn new(rig: &Rig, table: &InfluenceTable, root_row: &[(u32, f32)]) -> Self {
         let width = 4 * table.bone_count;
@@ -196,13 +279,12 @@ impl Whitening {
         let mut centring = DMatrix::<f64>::identity(width, width);
         for (v, weight) in root_row {
             for (j, entry) in vertex(*v as usize) {
-                for bone in 0..table.rig_bone_count {
+                for bone in 0..table.rig_bones.len() {
                     centring[(4 * bone + 3, j)] -= f64::from(*weight) * entry;
                 }
             }
         }
-        let centred = centring.tr_mul(&(gram * &centring));
-        let eigen = SymmetricEigen::new(centred);
+        let eigen = SymmetricEigen::new(centring.tr_mul(&(&gram * &centring)));
         let largest = eigen.eigenvalues.max();
         let kept: Vec<DVector<f64>> = eigen
             .eigenvalues
@@ -211,14 +293,38 @@ impl Whitening {
             .filter(|(_, value)| **value > Self::LEAST_SHARE * largest)
             .map(|(i, value)| eigen.eigenvectors.column(i) / value.sqrt())
             .collect();
-        Self { columns: centring * DMatrix::from_columns(&kept) }
+        let columns = &centring * DMatrix::from_columns(&kept);
+        Self { gram, centring, columns }
     }
 
-    /// The layer's expansion `[rank][4 · bones]` for principal axes `[whitened][rank]`.
-    fn expansion(&self, axes: &DMatrix<f64>) -> Vec<f32> {
-        let expansion = &self.columns * axes;
-        // Column-major storage is the order wanted.
-        expansion.as_slice().iter().map(|x| *x as f32).collect()
+    /// The orthonormal coordinates of a centred mesh with moments `Φᵀ · mesh / N`.
+    fn whitened(&self, moments: &DMatrix<f64>) -> DMatrix<f64> {
+        self.columns.tr_mul(moments)
+    }
+
+    /// `blended`, plus what samples of (mesh, features) differ from it by, fitted by least squares.
+    fn corrected(
+        &self,
+        blended: DMatrix<f64>,
+        samples: &[(DMatrix<f64>, DMatrix<f64>)],
+    ) -> Result<DMatrix<f64>, BasisError> {
+        let (first, _) = samples.first().ok_or(BasisError::NoPoses)?;
+        let width = blended.ncols();
+        let mut of_features = DMatrix::<f64>::zeros(width, width);
+        let mut of_meshes = DMatrix::<f64>::zeros(first.nrows(), width);
+        for (mesh, features) in samples {
+            of_features += features * features.transpose();
+            of_meshes += mesh * features.transpose();
+        }
+        // What blending alone gives, in the same coordinates, is linear in the features too.
+        let blending = self.columns.tr_mul(&(&self.gram * &blended));
+        let missing = of_meshes - blending * &of_features;
+        let ridge = Self::RIDGE * of_features.trace() / width as f64;
+        let solver = (of_features + ridge * DMatrix::<f64>::identity(width, width))
+            .cholesky()
+            .ok_or(BasisError::Degenerate)?;
+        let correction = solver.solve(&missing.transpose()).transpose();
+        Ok(blended + &self.columns * correction)
     }
 }
 
@@ -227,29 +333,8 @@ fn sparse_row(rest: Vec3, influences: &[(u16, f32)]) -> Vec<(usize, f64)> {
     let entries = [rest.x, rest.y, rest.z, 1.0].map(f64::from);
     let of_bone = |(bone, weight): &(u16, f32)| {
         let (bone, weight) = (usize::from(*bone), f64::from(*weight));
-        entries.iter().enumerate().map(move |(i, entry)| (4 * bone + i, weight * entry)).collect::<Vec<_>>()
+        let entry = move |(i, entry): (usize, f64)| (4 * bone + i, weight * entry);
+        entries.into_iter().enumerate().map(entry)
     };
     influences.iter().flat_map(of_bone).collect()
-}
-
-/// The `rank` leading principal axes of whitened meshes `[whitened][3]`, without centring: turning a mesh must not leave the space.
-fn principal_axes(whitened: &[DMatrix<f64>], rank: usize) -> Result<DMatrix<f64>, BasisError> {
-    let width = whitened[0].nrows();
-    if rank > width {
-        return Err(BasisError::Rank { wanted: rank, found: width });
-    }
-    let stacked = DMatrix::from_fn(width, 3 * whitened.len(), |i, j| whitened[j / 3][(i, j % 3)]);
-    let eigen = SymmetricEigen::new(&stacked * stacked.transpose());
-    let mut order: Vec<usize> = (0..width).collect();
-    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
-    let columns: Vec<DVector<f64>> = order[..rank]
-        .iter()
-        .map(|i| {
-            let column = eigen.eigenvectors.column(*i).into_owned();
-            // The sign of an eigenvector is arbitrary: make the largest entry positive.
-            let largest = column.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
-            column * largest.signum()
-        })
-        .collect();
-    Ok(DMatrix::from_columns(&columns))
 }

@@ -13,12 +13,10 @@ use super::{Augmentation, BodySet, Rotations, normal_pair, random};
 pub struct Batch {
     /// How many.
     pub len: usize,
-    /// `[len][3][rank]`, metres.
-    pub coefficients: Vec<f32>,
+    /// `[len][3][code_columns]`: see [`SkinBasis::code`](super::SkinBasis::code).
+    pub codes: Vec<f32>,
     /// `[len][input_len]`: input vectors of the sketches.
     pub inputs: Vec<f32>,
-    /// `[len][bone]`: true lengths of the figure's bones, metres.
-    pub bone_lengths: Vec<f32>,
 }
 
 /// Makes batches from a set of bodies. Which ones depends on the seed, the epoch and the number of the batch alone.
@@ -59,21 +57,25 @@ impl Batcher<'_> {
     /// [`SketchError`] when a sketch is degenerate, which bodies are not.
     pub fn batch(&self, epoch: u64, index: usize, order: &[usize]) -> Result<Batch, SketchError> {
         let mut rng = random(self.seed, "batch", (epoch << 24) | index as u64);
-        let chosen: Vec<usize> = order.iter().cycle().skip(index * self.batch_size).take(self.batch_size).copied().collect();
-        let width = self.bodies.coefficients.len() / self.bodies.len.max(1);
+        let chosen: Vec<usize> = order
+            .iter()
+            .cycle()
+            .skip(index * self.batch_size)
+            .take(self.batch_size)
+            .copied()
+            .collect();
+        let width = self.bodies.codes.len() / self.bodies.len.max(1);
         let input_len = self.figure.input_len();
         let mut batch = Batch {
             len: chosen.len(),
-            coefficients: vec![0.0; chosen.len() * width],
+            codes: vec![0.0; chosen.len() * width],
             inputs: vec![0.0; chosen.len() * input_len],
-            bone_lengths: Vec::with_capacity(chosen.len() * self.figure.bones.len()),
         };
         for (slot, body) in chosen.into_iter().enumerate() {
             let turn = self.rotations.sample(&mut rng);
-            let coefficients = &mut batch.coefficients[slot * width..][..width];
-            turn_coefficients(turn, self.bodies.coefficients_of(body), coefficients);
+            let code = &mut batch.codes[slot * width..][..width];
+            turn_coefficients(turn, self.bodies.code_of(body), code);
             let joints = self.bodies.joints_of(body);
-            batch.bone_lengths.extend(self.figure.bones.iter().map(|&[a, b]| joints[a].distance(joints[b])));
             let mut drawn = drawn(turn, joints);
             let noise = self.augmentation.sample(&mut rng);
             noise.apply(self.figure, &mut drawn, &mut rng);
@@ -87,11 +89,17 @@ impl Batcher<'_> {
     #[must_use]
     pub fn noise(&self, epoch: u64, index: usize, count: usize) -> Vec<f32> {
         let mut rng = random(self.seed, "noise", (epoch << 24) | index as u64);
-        (0..count.div_ceil(2)).flat_map(|_| normal_pair(&mut rng)).take(count).collect()
+        (0..count.div_ceil(2))
+            .flat_map(|_| normal_pair(&mut rng))
+            .take(count)
+            .collect()
     }
 }
 
 /// The orthographic projection of turned joints on the sketch plane (paper section 4.1).
 pub(crate) fn drawn(turn: Quat, joints: &[Vec3]) -> Vec<Vec2> {
-    joints.iter().map(|joint| (turn * *joint).truncate()).collect()
+    joints
+        .iter()
+        .map(|joint| (turn * *joint).truncate())
+        .collect()
 }

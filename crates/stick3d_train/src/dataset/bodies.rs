@@ -1,4 +1,4 @@
-//! Many posed bodies as coefficients and joints.
+//! Many posed bodies as codes and joints.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -21,8 +21,8 @@ const STREAMS: usize = 16;
 /// Posed bodies, centred on the root joint, not turned.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BodySet {
-    /// `[body][3][rank]`.
-    pub coefficients: Vec<f32>,
+    /// `[body][3][code_columns]`: see [`SkinBasis::code`].
+    pub codes: Vec<f32>,
     /// `[body][joint]`, metres.
     pub joints: Vec<Vec3>,
     /// How many bodies there are.
@@ -30,11 +30,9 @@ pub struct BodySet {
 }
 
 impl BodySet {
-    /// Draws `count` bodies from streams of poses, several streams at once.
+    /// Draws `count` bodies from streams of poses, several streams at once. Calls `done(1)` after each.
     pub fn sample(
         rig: &Rig,
-        regressor: &JointRegressor,
-        root: usize,
         basis: &SkinBasis,
         streams: &PoseStreams<'_>,
         count: usize,
@@ -44,8 +42,7 @@ impl BodySet {
             .into_par_iter()
             .map(|stream| {
                 let share = count / STREAMS + usize::from(stream < count % STREAMS);
-                let poses = streams(stream as u64).take(share);
-                Self::from_poses(rig, regressor, root, basis, poses, done)
+                Self::from_poses(rig, basis, streams(stream as u64).take(share), done)
             })
             .collect();
         let mut set = Self::default();
@@ -56,18 +53,15 @@ impl BodySet {
     /// The bodies of given poses. Calls `done(1)` after each.
     pub fn from_poses(
         rig: &Rig,
-        regressor: &JointRegressor,
-        root: usize,
         basis: &SkinBasis,
         poses: impl IntoIterator<Item = Pose>,
         done: &(dyn Fn(usize) + Sync),
     ) -> Self {
         let mut set = Self::default();
-        let mut positions = vec![];
         for pose in poses {
-            let joints = posed(rig, regressor, root, &pose, &mut positions);
-            set.coefficients.extend(basis.project(&positions));
-            set.joints.extend(joints);
+            let code = basis.code(rig, &pose);
+            set.joints.extend(basis.joints(&code));
+            set.codes.extend(code);
             set.len += 1;
             done(1);
         }
@@ -76,16 +70,16 @@ impl BodySet {
 
     /// Adds the bodies of another set.
     pub fn extend(&mut self, other: Self) {
-        self.coefficients.extend(other.coefficients);
+        self.codes.extend(other.codes);
         self.joints.extend(other.joints);
         self.len += other.len;
     }
 
-    /// The coefficients of one body, `[3][rank]`.
+    /// The code of one body, `[3][code_columns]`.
     #[must_use]
-    pub fn coefficients_of(&self, body: usize) -> &[f32] {
-        let width = self.coefficients.len() / self.len.max(1);
-        &self.coefficients[body * width..][..width]
+    pub fn code_of(&self, body: usize) -> &[f32] {
+        let width = self.codes.len() / self.len.max(1);
+        &self.codes[body * width..][..width]
     }
 
     /// The joints of one body, metres.
@@ -100,11 +94,15 @@ impl BodySet {
     pub fn hash(&self) -> String {
         let mut hasher = sha2::Sha256::new();
         hasher.update((self.len as u64).to_le_bytes());
-        hasher.update(bytemuck::cast_slice::<f32, u8>(&self.coefficients));
+        hasher.update(bytemuck::cast_slice::<f32, u8>(&self.codes));
         for joint in &self.joints {
             hasher.update(bytemuck::cast_slice::<f32, u8>(&joint.to_array()));
         }
-        hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        hasher
+            .finalize()
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
     }
 }
 
@@ -119,6 +117,9 @@ pub(crate) fn posed(
     rig.skin(pose, positions);
     let mut joints = regressor.joints(positions);
     let centre = joints[root];
-    positions.iter_mut().chain(&mut joints).for_each(|point| *point -= centre);
+    positions
+        .iter_mut()
+        .chain(&mut joints)
+        .for_each(|point| *point -= centre);
     joints
 }

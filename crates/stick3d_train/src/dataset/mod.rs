@@ -1,9 +1,8 @@
 //! Training pairs: posed bodies and the sketches of them.
 //!
-//! Nothing in training touches 3N numbers. A body is the few coefficients of a [basis](SkinBasis) that spans the posed
-//! meshes; distances between coefficients are distances between meshes, turning the body turns the coefficients, and
-//! the joints follow from them. So a [`BodySet`] is small, and [batches](Batcher) with ever new rotations and sketches
-//! are made while training.
+//! Nothing in training touches 3N numbers. A body is its *code*, two columns of every bone's rotation, in a
+//! [basis](SkinBasis) that gives vertices and joints for them; turning the body turns the code. So a [`BodySet`] is
+//! small, and [batches](Batcher) with ever new rotations and sketches are made while training.
 
 mod augment;
 mod basis;
@@ -14,13 +13,13 @@ mod rotation;
 
 pub use augment::{Augmentation, SketchNoise};
 pub use basis::{BasisConfig, BasisError, BasisFit, SkinBasis};
+pub(crate) use batch::drawn;
 pub use batch::{Batch, Batcher};
+pub(crate) use bodies::posed;
 pub use bodies::{BodySet, PoseStream, PoseStreams};
 pub use influences::InfluenceTable;
-pub use rotation::{Rotations, rotation};
-pub(crate) use batch::drawn;
-pub(crate) use bodies::posed;
 pub(crate) use rotation::turn_coefficients;
+pub use rotation::{Rotations, rotation};
 
 use rand::Rng;
 use rand::SeedableRng as _;
@@ -45,8 +44,14 @@ pub(crate) fn normal_pair(rng: &mut impl Rng) -> [f32; 2] {
     [radius * cos, radius * sin]
 }
 
+/// To a millionth, for what is reported: so short a decimal is read back from JSON exactly.
+pub(crate) fn rounded(number: f64) -> f64 {
+    (1e6 * number).round() / 1e6
+}
+
+
 #[cfg(test)]
-mod tests {
+mod random_tests {
     use super::*;
 
     #[test]
@@ -61,9 +66,15 @@ mod tests {
     #[test]
     fn normals_have_mean_zero_and_variance_one() {
         let mut rng = random(5, "test", 0);
-        let numbers: Vec<f64> = (0..50_000).flat_map(|_| normal_pair(&mut rng)).map(f64::from).collect();
+        let numbers: Vec<f64> = (0..50_000)
+            .flat_map(|_| normal_pair(&mut rng))
+            .map(f64::from)
+            .collect();
         let mean = numbers.iter().sum::<f64>() / numbers.len() as f64;
         let variance = numbers.iter().map(|x| x * x).sum::<f64>() / numbers.len() as f64;
-        assert!(mean.abs() < 0.02 && (variance - 1.0).abs() < 0.02, "{mean} {variance}");
+        assert!(
+            mean.abs() < 0.02 && (variance - 1.0).abs() < 0.02,
+            "{mean} {variance}"
+        );
     }
 }

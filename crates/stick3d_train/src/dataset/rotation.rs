@@ -28,19 +28,28 @@ pub enum Rotations {
 
 impl Rotations {
     /// The turns of the shipped models.
-    pub const SHIPPED: Self =
-        Self::Continuous { yaw_deg: 90.0, roll_deg: 45.0, pitch_deg: 10.0, upright_share: 0.3 };
+    pub const SHIPPED: Self = Self::Continuous {
+        yaw_deg: 90.0,
+        roll_deg: 45.0,
+        pitch_deg: 10.0,
+        upright_share: 0.3,
+    };
 
     /// The turns that models are measured with: uniform within the limits of [`Rotations::SHIPPED`].
-    pub const TEST: Self =
-        Self::Continuous { yaw_deg: 90.0, roll_deg: 45.0, pitch_deg: 10.0, upright_share: 0.0 };
+    pub const TEST: Self = Self::Continuous {
+        yaw_deg: 90.0,
+        roll_deg: 45.0,
+        pitch_deg: 10.0,
+        upright_share: 0.0,
+    };
 
     /// The paper's 21 turns.
     #[must_use]
     pub fn paper_list() -> Vec<Quat> {
         let rolls = [-45.0, 0.0, 45.0];
         let yaws = (-3..=3).map(|step| 30.0 * step as f32);
-        yaws.flat_map(|yaw| rolls.map(|roll| rotation(yaw, 0.0, roll))).collect()
+        yaws.flat_map(|yaw| rolls.map(|roll| rotation(yaw, 0.0, roll)))
+            .collect()
     }
 
     /// Draws one.
@@ -50,7 +59,12 @@ impl Rotations {
                 let yaw = 30.0 * (rng.random_range(0..7_i32) - 3) as f32;
                 rotation(yaw, 0.0, 45.0 * (rng.random_range(0..3_i32) - 1) as f32)
             }
-            Self::Continuous { yaw_deg, roll_deg, pitch_deg, upright_share } => {
+            Self::Continuous {
+                yaw_deg,
+                roll_deg,
+                pitch_deg,
+                upright_share,
+            } => {
                 let uniform = |rng: &mut dyn rand::RngCore| 2.0 * rng.random::<f32>() - 1.0;
                 let yaw = yaw_deg * uniform(rng);
                 let pitch = pitch_deg * uniform(rng);

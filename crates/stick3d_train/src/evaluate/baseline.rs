@@ -23,7 +23,12 @@ impl Baseline {
     ///
     /// # Errors
     /// [`EvalError::NoLibrary`] without poses, [`EvalError::Sketch`] when one cannot be drawn.
-    pub fn new(figure: &Figure, rig: &Rig, regressor: &JointRegressor, poses: &[Pose]) -> Result<Self, EvalError> {
+    pub fn new(
+        figure: &Figure,
+        rig: &Rig,
+        regressor: &JointRegressor,
+        poses: &[Pose],
+    ) -> Result<Self, EvalError> {
         if poses.is_empty() {
             return Err(EvalError::NoLibrary);
         }
@@ -37,7 +42,11 @@ impl Baseline {
                 inputs.push(Sketch::new(figure, drawn(*turn, &joints))?.input_vector(figure)?);
             }
         }
-        Ok(Self { meshes, turns, inputs })
+        Ok(Self {
+            meshes,
+            turns,
+            inputs,
+        })
     }
 
     /// How many meshes there are, turns counted.
@@ -58,11 +67,20 @@ impl Baseline {
     /// [`EvalError::Sketch`] when the sketch has no input vector.
     pub fn nearest(&self, figure: &Figure, sketch: &Sketch) -> Result<Vec<Vec3>, EvalError> {
         let wanted = sketch.input_vector(figure)?;
-        let distance = |input: &[f32]| -> f32 { input.iter().zip(&wanted).map(|(a, b)| (a - b).powi(2)).sum() };
+        let distance = |input: &[f32]| -> f32 {
+            input
+                .iter()
+                .zip(&wanted)
+                .map(|(a, b)| (a - b).powi(2))
+                .sum()
+        };
         let closest = (0..self.inputs.len())
             .min_by(|a, b| distance(&self.inputs[*a]).total_cmp(&distance(&self.inputs[*b])))
             .ok_or(EvalError::NoLibrary)?;
         let turn = self.turns[closest % self.turns.len()];
-        Ok(self.meshes[closest / self.turns.len()].iter().map(|point| turn * *point).collect())
+        Ok(self.meshes[closest / self.turns.len()]
+            .iter()
+            .map(|point| turn * *point)
+            .collect())
     }
 }

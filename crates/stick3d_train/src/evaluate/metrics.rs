@@ -5,6 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use stick3d_figure::figure::Figure;
 
+use crate::dataset::rounded;
+
 /// How far meshes are from the truth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
@@ -48,10 +50,18 @@ impl Collector {
     pub fn add(&mut self, figure: &Figure, found: (&[Vec3], &[Vec3]), truth: (&[Vec3], &[Vec3])) {
         let ((mesh, joints), (true_mesh, true_joints)) = (found, truth);
         self.cases += 1;
-        self.vertex_m.extend(mesh.iter().zip(true_mesh).map(|(a, b)| a.distance(*b)));
-        self.joint_m.extend(joints.iter().zip(true_joints).map(|(a, b)| a.distance(*b)));
-        self.flat_m.extend(joints.iter().zip(true_joints).map(|(a, b)| a.truncate().distance(b.truncate())));
-        self.aligned_joint_m.push(procrustes_mean_distance(joints, true_joints));
+        self.vertex_m
+            .extend(mesh.iter().zip(true_mesh).map(|(a, b)| a.distance(*b)));
+        self.joint_m
+            .extend(joints.iter().zip(true_joints).map(|(a, b)| a.distance(*b)));
+        self.flat_m.extend(
+            joints
+                .iter()
+                .zip(true_joints)
+                .map(|(a, b)| a.truncate().distance(b.truncate())),
+        );
+        self.aligned_joint_m
+            .push(procrustes_mean_distance(joints, true_joints));
         self.bone_share.extend(figure.bones.iter().map(|&[a, b]| {
             let length = true_joints[a].distance(true_joints[b]).max(f32::EPSILON);
             (joints[a].distance(joints[b]) - length).abs() / length
@@ -75,19 +85,21 @@ impl Collector {
         let vertex_mean = mean(&self.vertex_m);
         let squares: Vec<f32> = self.vertex_m.iter().map(|d| d * d).collect();
         let vertex_square = mean(&squares);
-        let aligned = self.aligned_joint_m.iter().sum::<f64>() / self.aligned_joint_m.len().max(1) as f64;
+        let aligned =
+            self.aligned_joint_m.iter().sum::<f64>() / self.aligned_joint_m.len().max(1) as f64;
+        let variance = (vertex_square - vertex_mean * vertex_mean).max(0.0);
         Metrics {
             cases: self.cases,
-            vertex_mean_cm: 100.0 * vertex_mean,
-            vertex_std_cm: 100.0 * (vertex_square - vertex_mean * vertex_mean).max(0.0).sqrt(),
-            vertex_p95_cm: 100.0 * percentile_95(&self.vertex_m),
-            vertex_mean_normalised: vertex_mean / extent,
-            mse_normalised: vertex_square / (3.0 * extent * extent),
-            mpjpe_mm: 1000.0 * mean(&self.joint_m),
-            pa_mpjpe_mm: 1000.0 * aligned,
-            reprojection_cm: 100.0 * mean(&self.flat_m),
-            bone_length_percent: 100.0 * mean(&self.bone_share),
-            bone_length_p95_percent: 100.0 * percentile_95(&self.bone_share),
+            vertex_mean_cm: rounded(100.0 * vertex_mean),
+            vertex_std_cm: rounded(100.0 * variance.sqrt()),
+            vertex_p95_cm: rounded(100.0 * percentile_95(&self.vertex_m)),
+            vertex_mean_normalised: rounded(vertex_mean / extent),
+            mse_normalised: rounded(vertex_square / (3.0 * extent * extent)),
+            mpjpe_mm: rounded(1000.0 * mean(&self.joint_m)),
+            pa_mpjpe_mm: rounded(1000.0 * aligned),
+            reprojection_cm: rounded(100.0 * mean(&self.flat_m)),
+            bone_length_percent: rounded(100.0 * mean(&self.bone_share)),
+            bone_length_p95_percent: rounded(100.0 * percentile_95(&self.bone_share)),
         }
     }
 }
@@ -132,8 +144,13 @@ pub fn procrustes_mean_distance(points: &[Vec3], target: &[Vec3]) -> f64 {
         signs.z = -1.0;
     }
     let rotation = u * Matrix3::from_diagonal(&signs) * v_t;
-    let scale = if spread > 0.0 { svd.singular_values.dot(&signs) / spread } else { 1.0 };
-    let distance = |(p, t): (&Vec3, &Vec3)| (scale * rotation * (vector(p) - from) - (vector(t) - to)).norm();
+    let scale = if spread > 0.0 {
+        svd.singular_values.dot(&signs) / spread
+    } else {
+        1.0
+    };
+    let distance =
+        |(p, t): (&Vec3, &Vec3)| (scale * rotation * (vector(p) - from) - (vector(t) - to)).norm();
     points.iter().zip(target).map(distance).sum::<f64>() / count
 }
 
@@ -145,10 +162,14 @@ mod tests {
 
     #[test]
     fn similar_shapes_align_exactly() {
-        let target: Vec<Vec3> =
-            (0..11).map(|i| Vec3::new((i * 7 % 5) as f32, (i * 3 % 4) as f32, (i * 5 % 3) as f32)).collect();
+        let target: Vec<Vec3> = (0..11)
+            .map(|i| Vec3::new((i * 7 % 5) as f32, (i * 3 % 4) as f32, (i * 5 % 3) as f32))
+            .collect();
         let turn = Quat::from_euler(glam::EulerRot::XYZ, 0.3, -1.2, 0.7);
-        let moved: Vec<Vec3> = target.iter().map(|p| turn * (*p * 0.4) + Vec3::new(1.0, -2.0, 0.5)).collect();
+        let moved: Vec<Vec3> = target
+            .iter()
+            .map(|p| turn * (*p * 0.4) + Vec3::new(1.0, -2.0, 0.5))
+            .collect();
         assert!(procrustes_mean_distance(&moved, &target) < 1e-5);
         // A mirror image is no similarity.
         let mirrored: Vec<Vec3> = target.iter().map(|p| Vec3::new(-p.x, p.y, p.z)).collect();
@@ -159,7 +180,10 @@ mod tests {
     fn measures_of_a_known_shift() {
         let figure = Figure::human();
         let truth: Vec<Vec3> = figure.template.iter().map(|p| p.extend(0.0)).collect();
-        let found: Vec<Vec3> = truth.iter().map(|p| *p + Vec3::new(0.03, 0.0, 0.04)).collect();
+        let found: Vec<Vec3> = truth
+            .iter()
+            .map(|p| *p + Vec3::new(0.03, 0.0, 0.04))
+            .collect();
         let mut collector = Collector::default();
         collector.add(figure, (&found, &found), (&truth, &truth));
         let metrics = collector.metrics(0.9);

@@ -40,7 +40,11 @@ pub struct EvalConfig {
 
 impl Default for EvalConfig {
     fn default() -> Self {
-        Self { seed: 20_220_811, sampled_poses: 400, turns_per_library_pose: 10 }
+        Self {
+            seed: 20_220_811,
+            sampled_poses: 400,
+            turns_per_library_pose: 10,
+        }
     }
 }
 
@@ -77,9 +81,27 @@ pub enum EvalError {
 /// The four ways in which every test case is drawn.
 pub const DRAWN: [(&str, SketchNoise); 4] = [
     ("clean", SketchNoise::CLEAN),
-    ("joints jittered by 2.5 cm", SketchNoise { jitter_m: 0.025, bone_scale: 0.0 }),
-    ("bones scaled by 15 %", SketchNoise { jitter_m: 0.0, bone_scale: 0.15 }),
-    ("both", SketchNoise { jitter_m: 0.025, bone_scale: 0.15 }),
+    (
+        "joints jittered by 2.5 cm",
+        SketchNoise {
+            jitter_m: 0.025,
+            bone_scale: 0.0,
+        },
+    ),
+    (
+        "bones scaled by 15 %",
+        SketchNoise {
+            jitter_m: 0.0,
+            bone_scale: 0.15,
+        },
+    ),
+    (
+        "both",
+        SketchNoise {
+            jitter_m: 0.025,
+            bone_scale: 0.15,
+        },
+    ),
 ];
 
 /// Measures a model and the baseline.
@@ -154,7 +176,13 @@ impl Evaluation<'_> {
         self.rng_step += 1;
         let turn = Rotations::TEST.sample(&mut rng);
         let mut truth = vec![];
-        let rest_joints = posed(self.rig, self.model.regressor(), figure.root, pose, &mut truth);
+        let rest_joints = posed(
+            self.rig,
+            self.model.regressor(),
+            figure.root,
+            pose,
+            &mut truth,
+        );
         truth.iter_mut().for_each(|point| *point = turn * *point);
         let joints: Vec<Vec3> = rest_joints.iter().map(|joint| turn * *joint).collect();
         let mut latent = vec![0.0; self.inference.latent_len()];
@@ -169,9 +197,17 @@ impl Evaluation<'_> {
             let collectors = &mut self.collectors[index];
             let regressor = self.model.regressor();
             let slot = source as usize;
-            collectors.model[slot].add(figure, (&found, &regressor.joints(&found)), (&truth, &joints));
+            collectors.model[slot].add(
+                figure,
+                (&found, &regressor.joints(&found)),
+                (&truth, &joints),
+            );
             let nearest = self.baseline.nearest(figure, &sketch)?;
-            collectors.baseline[slot].add(figure, (&nearest, &regressor.joints(&nearest)), (&truth, &joints));
+            collectors.baseline[slot].add(
+                figure,
+                (&nearest, &regressor.joints(&nearest)),
+                (&truth, &joints),
+            );
         }
         Ok(())
     }
@@ -189,6 +225,10 @@ impl Evaluation<'_> {
             library_cases,
             baseline_meshes: self.baseline.len(),
         };
-        Report { test, model, baseline }
+        Report {
+            test,
+            model,
+            baseline,
+        }
     }
 }

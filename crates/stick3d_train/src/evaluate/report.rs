@@ -45,7 +45,12 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    pub(super) fn new(name: &str, noise: SketchNoise, [sampled, library]: [Collector; 2], extent_m: f32) -> Self {
+    pub(super) fn new(
+        name: &str,
+        noise: SketchNoise,
+        [sampled, library]: [Collector; 2],
+        extent_m: f32,
+    ) -> Self {
         let mut all = sampled.clone();
         all.merge(&library);
         Self {

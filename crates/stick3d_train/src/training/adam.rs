@@ -62,7 +62,11 @@ struct Stepper<'a> {
 }
 
 impl Stepper<'_> {
-    fn stepped<const D: usize>(&mut self, tensor: Tensor<D>, gradient: Tensor<D>) -> Result<Tensor<D>, String> {
+    fn stepped<const D: usize>(
+        &mut self,
+        tensor: Tensor<D>,
+        gradient: Tensor<D>,
+    ) -> Result<Tensor<D>, String> {
         let device = tensor.device();
         let read = |t: Tensor<D>| t.try_into_data().map_err(|e| format!("{e:?}"));
         let mut data = read(tensor.detach())?;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use stick3d_model::Architecture;
 use stick3d_model::architecture::LATENT_LEN;
 
-use super::StageName;
+use super::{StageName, TrainError};
 use crate::dataset::{Augmentation, BasisConfig, Rotations};
 
 /// Everything that decides what a run yields, beside the rig and the poses.
@@ -12,8 +12,8 @@ use crate::dataset::{Augmentation, BasisConfig, Rotations};
 pub struct TrainConfig {
     /// What all random numbers depend on.
     pub seed: u64,
-    /// The networks; [`Architecture::Basis`] with the rank of `basis`.
-    pub architecture: Architecture,
+    /// Hidden layers of the networks.
+    pub hidden: HiddenLayers,
     /// Length of the latent.
     pub latent_len: usize,
     /// The basis of the meshes.
@@ -36,6 +36,17 @@ pub struct TrainConfig {
     pub checkpoint_every: usize,
 }
 
+/// Widths of the hidden layers of the networks.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HiddenLayers {
+    /// Encoder3D's.
+    pub encoder3d: Vec<usize>,
+    /// Those of the decoder's head.
+    pub head: Vec<usize>,
+    /// Encoder2D's.
+    pub encoder2d: Vec<usize>,
+}
+
 /// One stage of training.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StageConfig {
@@ -51,6 +62,8 @@ pub struct LossWeights {
     /// Paper's alpha: weight of the mean squared error over all coordinates in normalised units, against the
     /// Kullback-Leibler divergence (section 4.3: 1e5).
     pub alpha: f64,
+    /// Weight of the mean squared error of the normalised codes beside that of the coordinates.
+    pub code: f64,
     /// Weight of the whole autoencoder loss in the joint stage.
     pub autoencoder: f64,
     /// Weight of equation 2: squared error between the two encoders, mean over the latent.
@@ -71,29 +84,41 @@ impl TrainConfig {
     /// The recipe of the shipped human.
     #[must_use]
     pub fn human() -> Self {
-        let basis = BasisConfig { rank: 96, helpers: 48, poses: 4000 };
         Self {
             seed: 1,
-            architecture: Architecture::Basis {
-                rank: basis.rank,
+            hidden: HiddenLayers {
                 encoder3d: vec![512, 512],
                 head: vec![512, 512],
-                encoder2d: vec![1024, 1024],
+                encoder2d: vec![1024, 1024, 1024],
             },
             latent_len: LATENT_LEN,
-            basis,
+            basis: BasisConfig { helpers: 32, poses: 2000 },
             sampled_bodies: 40_000,
             library_repeats: 10,
             rotations: Rotations::SHIPPED,
-            augmentation: Augmentation { clean_share: 0.5, jitter_m: 0.04, bone_scale: 0.2 },
+            augmentation: Augmentation {
+                clean_share: 0.5,
+                jitter_m: 0.04,
+                bone_scale: 0.2,
+            },
             batch_size: 256,
             stages: [
-                StageConfig { epochs: 10, learning_rate: 1e-3 },
-                StageConfig { epochs: 20, learning_rate: 1e-3 },
-                StageConfig { epochs: 30, learning_rate: 1e-3 },
+                StageConfig {
+                    epochs: 10,
+                    learning_rate: 1e-3,
+                },
+                StageConfig {
+                    epochs: 20,
+                    learning_rate: 1e-3,
+                },
+                StageConfig {
+                    epochs: 30,
+                    learning_rate: 1e-3,
+                },
             ],
             loss: LossWeights {
                 alpha: 1e5,
+                code: 0.01,
                 autoencoder: 0.02,
                 latent: 1.0,
                 vertices: 1.0,
@@ -106,9 +131,35 @@ impl TrainConfig {
         }
     }
 
+    /// Checks that the parts fit together.
+    pub(crate) fn validate(&self) -> Result<(), TrainError> {
+        let fault = |problem: String| Err(TrainError::Config(problem));
+        if self.batch_size == 0 || self.latent_len == 0 {
+            return fault("batch size and latent length must be at least 1".to_owned());
+        }
+        if self
+            .stages
+            .iter()
+            .any(|stage| !(stage.learning_rate.is_finite() && stage.learning_rate > 0.0))
+        {
+            return fault("every stage needs a positive learning rate".to_owned());
+        }
+        Ok(())
+    }
+
+    /// The networks for codes of `code_columns` vectors.
+    pub(crate) fn architecture(&self, code_columns: usize) -> Architecture {
+        let HiddenLayers { encoder3d, head, encoder2d } = self.hidden.clone();
+        Architecture::Basis { rank: code_columns, encoder3d, head, encoder2d }
+    }
+
     /// The stages with their names.
     pub(crate) fn named_stages(&self) -> [(StageName, StageConfig); 3] {
         let [a, b, c] = self.stages;
-        [(StageName::Autoencoder, a), (StageName::Encoder2d, b), (StageName::Joint, c)]
+        [
+            (StageName::Autoencoder, a),
+            (StageName::Encoder2d, b),
+            (StageName::Joint, c),
+        ]
     }
 }

@@ -1,6 +1,8 @@
 //! From trained networks to a model.
 
-use stick3d_model::metadata::{FORMAT_VERSION, Metadata, Normalisation, TOOL_VERSION, topology_hash};
+use stick3d_model::metadata::{
+    FORMAT_VERSION, Metadata, Normalisation, TOOL_VERSION, topology_hash,
+};
 use stick3d_model::weights::LinearWeights;
 use stick3d_model::{Model, ModelParts};
 
@@ -12,7 +14,10 @@ use super::{TrainConfig, TrainError};
 /// SHA-256 of a text, in hexadecimal digits.
 pub(super) fn hash_text(text: &str) -> String {
     use sha2::Digest as _;
-    sha2::Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+    sha2::Sha256::digest(text.as_bytes())
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
 }
 
 /// The model: normalisation folded into the networks, weights rounded as the file stores them.
@@ -22,7 +27,11 @@ pub(super) fn model(
     run: &Run<'_, '_>,
     weights: NetworkWeights,
 ) -> Result<Model, TrainError> {
-    let NetworkWeights { mut encoder3d, mut head, mut encoder2d } = weights;
+    let NetworkWeights {
+        mut encoder3d,
+        mut head,
+        mut encoder2d,
+    } = weights;
     if let Some(last) = head.layers.last_mut() {
         fold_into_output(last, &run.scale);
     }
@@ -38,12 +47,13 @@ pub(super) fn model(
         format_version: FORMAT_VERSION,
         tool_version: TOOL_VERSION.to_owned(),
         figure: input.figure.clone(),
-        architecture: config.architecture.clone(),
+        architecture: config.architecture(run.basis.code_columns()),
         latent_len: config.latent_len,
         vertex_count,
         topology_hash: topology_hash(vertex_count, &rig.mesh.triangles),
         normalisation: Normalisation {
-            input: "offsets along the sketch path, divided by their root mean square length".to_owned(),
+            input: "offsets along the sketch path, divided by their root mean square length"
+                .to_owned(),
             extent_m: run.extent_m,
             centre_joint: input.figure.joints[input.figure.root].name.clone(),
         },
@@ -64,19 +74,29 @@ pub(super) fn model(
     })?)
 }
 
-/// Makes a layer that wrote codes write `mean + scale · code`.
+/// Makes a layer that wrote normalised codes write codes as they are.
 fn fold_into_output(layer: &mut LinearWeights, scale: &CodeScale) {
-    layer.weight.iter_mut().for_each(|weight| *weight *= scale.scale);
+    layer
+        .weight
+        .iter_mut()
+        .for_each(|weight| *weight *= scale.scale);
     for (bias, mean) in layer.bias.iter_mut().zip(&scale.mean) {
         *bias = mean + scale.scale * *bias;
     }
 }
 
-/// Makes a layer that read codes read coefficients: `code = (coefficient - mean) / scale`.
+/// Makes a layer that read normalised codes read codes as they are.
 fn fold_into_input(layer: &mut LinearWeights, scale: &CodeScale) {
-    layer.weight.iter_mut().for_each(|weight| *weight /= scale.scale);
+    layer
+        .weight
+        .iter_mut()
+        .for_each(|weight| *weight /= scale.scale);
     let rows = layer.weight.chunks_exact(layer.output_len);
     for (mean, row) in scale.mean.iter().zip(rows) {
-        layer.bias.iter_mut().zip(row).for_each(|(bias, weight)| *bias -= mean * weight);
+        layer
+            .bias
+            .iter_mut()
+            .zip(row)
+            .for_each(|(bias, weight)| *bias -= mean * weight);
     }
 }

@@ -8,7 +8,10 @@ use crate::dataset::random;
 
 /// Weights before training (He et al., "Delving deep into rectifiers", uniform): variance 2 / inputs before a ReLU,
 /// 1 / inputs before an output.
-pub(crate) fn initial_weights(sizes: &NetworkSizes, seed: u64) -> (Encoder3dWeights, MlpWeights, MlpWeights) {
+pub(crate) fn initial_weights(
+    sizes: &NetworkSizes,
+    seed: u64,
+) -> (Encoder3dWeights, MlpWeights, MlpWeights) {
     let trunk_width = sizes.encoder3d_trunk.last().copied().unwrap_or(0);
     let mut rng = random(seed, "weights", 0);
     let encoder3d = Encoder3dWeights {
@@ -24,7 +27,11 @@ pub(crate) fn initial_weights(sizes: &NetworkSizes, seed: u64) -> (Encoder3dWeig
 fn mlp(widths: &[usize], relu_after_last: bool, rng: &mut impl Rng) -> MlpWeights {
     let mut weights = MlpWeights::zeros(widths, relu_after_last);
     for index in 0..weights.layers.len() {
-        let variance = if weights.has_relu_after(index) { 2.0 } else { 1.0 };
+        let variance = if weights.has_relu_after(index) {
+            2.0
+        } else {
+            1.0
+        };
         let layer = &mut weights.layers[index];
         *layer = linear(layer.input_len, layer.output_len, variance, rng);
     }

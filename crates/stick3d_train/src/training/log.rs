@@ -45,10 +45,19 @@ impl LossLog {
     #[must_use]
     pub fn to_csv(&self) -> String {
         let names = self.term_names();
-        let mut csv = format!("stage,epoch,loss{}\n", names.iter().map(|n| format!(",{n}")).collect::<String>());
+        let mut csv = format!(
+            "stage,epoch,loss{}\n",
+            names.iter().map(|n| format!(",{n}")).collect::<String>()
+        );
         for record in &self.records {
             // Writing into a String cannot fail.
-            let _ = write!(csv, "{},{},{:.6}", record.stage.label(), record.epoch, record.loss);
+            let _ = write!(
+                csv,
+                "{},{},{:.6}",
+                record.stage.label(),
+                record.epoch,
+                record.loss
+            );
             for name in &names {
                 csv.push(',');
                 if let Some((_, value)) = record.terms.iter().find(|(term, _)| term == name) {
@@ -72,7 +81,10 @@ mod tests {
             epoch: 0,
             epochs: 1,
             loss: 1.5,
-            terms: terms.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+            terms: terms
+                .iter()
+                .map(|(name, value)| ((*name).to_owned(), *value))
+                .collect(),
         };
         let log = LossLog {
             records: vec![

@@ -2,7 +2,7 @@
 
 use burn::tensor::{Device, Tensor, TensorData};
 use stick3d_figure::figure::Figure;
-use stick3d_model::network::reparameterize;
+use stick3d_model::network::{reparameterize, rotation_features};
 
 use super::networks::{Autoencoder, Networks};
 use super::{LossWeights, TrainError};
@@ -11,12 +11,12 @@ use crate::dataset::{Batch, SkinBasis};
 /// Keeps the square root of a vanishing distance differentiable, square metres (a tenth of a millimetre, squared).
 const SMALLEST_SQUARE_M2: f64 = 1e-8;
 
-/// How coefficients are normalised for the networks: `code = (coefficient - mean) / scale`.
+/// How codes are normalised for the networks: `(code - mean) / scale`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CodeScale {
-    /// Mean over turned bodies, `[3][rank]`, metres.
+    /// Mean over turned bodies, `[3][code_columns]`.
     pub(crate) mean: Vec<f32>,
-    /// One number for all, so that distances between codes stay distances between meshes; metres.
+    /// One number for all.
     pub(crate) scale: f32,
 }
 
@@ -24,28 +24,36 @@ pub(crate) struct CodeScale {
 #[derive(Debug, Clone)]
 pub(crate) struct Losses {
     weights: LossWeights,
-    scale_m: f64,
     extent_m: f64,
-    /// `[rank, probes]`: coefficients to some vertices.
-    probes: Tensor<2>,
-    /// `[rank, joints]`.
-    joints: Tensor<2>,
-    /// `[rank, bones]`: coefficients to the differences between the ends of the figure's bones.
-    bones: Tensor<2>,
-    /// `[3, bones]`: the same of the mean coefficients, metres.
-    mean_bones: Tensor<3>,
+    mean: Tensor<2>,
+    scale: f64,
+    turning_bones: usize,
+    halves: Vec<usize>,
+    /// `[features, probes + joints + bones]`: some vertices, the joints, and the differences between the ends of the
+    /// figure's bones.
+    points: Tensor<2>,
+    probes: usize,
+    joints: usize,
 }
 
 /// A batch on the device.
 pub(crate) struct Tensors {
-    /// Normalised coefficients, `[batch, 3·rank]`.
+    /// Normalised codes, `[batch, 3 · code_columns]`.
     pub(crate) codes: Tensor<2>,
+    /// What the codes stand for.
+    pub(crate) truth: Points,
     /// `[batch, input_len]`.
     pub(crate) inputs: Tensor<2>,
     /// `[batch, latent_len]`.
     pub(crate) noise: Tensor<2>,
-    /// `[batch, bones]`, metres.
-    pub(crate) bone_lengths: Tensor<2>,
+}
+
+/// Points of bodies, `[batch, 3, points]`, metres.
+#[derive(Debug, Clone)]
+pub(crate) struct Points {
+    probes: Tensor<3>,
+    joints: Tensor<3>,
+    bones: Tensor<3>,
 }
 
 /// Terms of one loss, for the log: name and value, unweighted.
@@ -60,33 +68,46 @@ impl Losses {
         weights: LossWeights,
         device: &Device,
     ) -> Self {
-        let rank = basis.rank();
-        let matrix = basis.layer().matrix().unwrap_or_default();
-        let vertices = matrix.len() / rank;
+        let columns = basis.rotations().feature_columns();
+        let (matrix, joint_rows) = (basis.matrix(), basis.joint_rows());
+        let vertices = matrix.len() / columns;
         let probes = weights.probes.clamp(1, vertices);
-        let probe_rows: Vec<f32> = (0..probes)
-            .flat_map(|i| &matrix[(i * vertices / probes) * rank..][..rank])
-            .copied()
-            .collect();
-        let joint_rows = basis.joint_rows();
-        let bone_rows: Vec<f32> = figure
-            .bones
-            .iter()
-            .flat_map(|&[a, b]| (0..rank).map(move |j| joint_rows[b * rank + j] - joint_rows[a * rank + j]))
-            .collect();
-        let columns = |rows: &[f32], count: usize| {
-            Tensor::<2>::from_data(TensorData::new(rows.to_vec(), [count, rank]), device).transpose()
-        };
-        let bones = columns(&bone_rows, figure.bones.len());
-        let mean = Tensor::<2>::from_data(TensorData::new(scale.mean.clone(), [3, rank]), device);
+        let mut rows: Vec<f32> = vec![];
+        for probe in 0..probes {
+            rows.extend(&matrix[probe * vertices / probes * columns..][..columns]);
+        }
+        rows.extend(joint_rows);
+        for &[a, b] in &figure.bones {
+            rows.extend((0..columns).map(|j| joint_rows[b * columns + j] - joint_rows[a * columns + j]));
+        }
+        let shape = [rows.len() / columns, columns];
+        let mean = TensorData::new(scale.mean.clone(), [1, scale.mean.len()]);
+        let halves = basis.rotations().halves.as_flattened();
         Self {
             weights,
-            scale_m: f64::from(scale.scale),
             extent_m: f64::from(extent_m),
-            probes: columns(&probe_rows, probes),
-            joints: columns(joint_rows, figure.joint_count()),
-            mean_bones: mean.matmul(bones.clone()).unsqueeze::<3>(),
-            bones,
+            mean: Tensor::from_data(mean, device),
+            scale: f64::from(scale.scale),
+            turning_bones: basis.rotations().bone_count,
+            halves: halves.iter().map(|bone| usize::from(*bone)).collect(),
+            points: Tensor::<2>::from_data(TensorData::new(rows, shape), device).transpose(),
+            probes,
+            joints: figure.joint_count(),
+        }
+    }
+
+    /// Where normalised codes put the points.
+    pub(crate) fn points(&self, codes: Tensor<2>) -> Points {
+        let [batch, _] = codes.dims();
+        let raw = codes * self.scale + self.mean.clone();
+        let features = rotation_features(raw, self.turning_bones, &self.halves);
+        let [_, count] = self.points.dims();
+        let all = features.matmul(self.points.clone()).reshape([batch, 3, count]);
+        let bones = count - self.probes - self.joints;
+        Points {
+            probes: all.clone().narrow(2, 0, self.probes),
+            joints: all.clone().narrow(2, self.probes, self.joints),
+            bones: all.narrow(2, self.probes + self.joints, bones),
         }
     }
 
@@ -95,14 +116,14 @@ impl Losses {
         let (mean, log_variance) = vae.encoder3d.forward(batch.codes.clone());
         let log_variance = log_variance.clamp(-12.0, 8.0);
         let latent = reparameterize(mean.clone(), log_variance.clone(), batch.noise.clone());
-        let error = vae.head.forward(latent) - batch.codes.clone();
-        // Mean over the batch of |a - b|², which is three times the mean squared error of a coordinate.
-        let metres_squared = error.square().sum_dim(1).mean() * (self.scale_m * self.scale_m);
-        let squared = metres_squared / (3.0 * self.extent_m * self.extent_m);
+        let codes = vae.head.forward(latent);
+        let of_codes = (codes.clone() - batch.codes.clone()).square().mean();
+        let error = self.points(codes).probes - batch.truth.probes.clone();
+        let squared = error.square().mean() / (self.extent_m * self.extent_m);
         let divergence =
             (mean.square() + log_variance.clone().exp() - log_variance - 1.0).sum_dim(1).mean() * 0.5;
-        let loss = squared.clone() * self.weights.alpha + divergence.clone();
-        (loss, vec![("mse", squared.detach()), ("kl", divergence.detach())])
+        let loss = (squared.clone() + of_codes.clone() * self.weights.code) * self.weights.alpha + divergence.clone();
+        (loss, vec![("mse", squared.detach()), ("code", of_codes.detach()), ("kl", divergence.detach())])
     }
 
     /// Equation 2, and how far the body decoded from the sketch is from the body drawn.
@@ -114,16 +135,14 @@ impl Losses {
     ) -> (Tensor<1>, Terms) {
         let latent = networks.encoder2d.forward(batch.inputs.clone());
         let equation_2 = (latent.clone() - target_mean).square().mean();
-        let codes = networks.vae.head.forward(latent);
-        let [len, width] = codes.dims();
-        let by_axis = |codes: Tensor<2>| codes.reshape([3 * len, width / 3]);
-        let difference = by_axis(codes.clone() - batch.codes.clone());
-
-        let vertices = self.distance_cm(difference.clone().matmul(self.probes.clone()), len);
-        let joint_difference = difference.matmul(self.joints.clone());
-        let joints = self.distance_cm(joint_difference.clone(), len);
-        let reprojection = self.flat_distance_cm(joint_difference, len);
-        let bones = self.bone_error_percent(by_axis(codes), batch);
+        let found = self.points(networks.vae.head.forward(latent));
+        let truth = batch.truth.clone();
+        let joint_difference = found.joints - truth.joints;
+        let vertices = length(found.probes - truth.probes).mean() * 100.0;
+        let reprojection = length(joint_difference.clone().narrow(1, 0, 2)).mean() * 100.0;
+        let joints = length(joint_difference).mean() * 100.0;
+        let true_lengths = length(truth.bones);
+        let bones = ((length(found.bones) - true_lengths.clone()).abs() / true_lengths).mean() * 100.0;
         let LossWeights { latent, vertices: v, joints: j, reprojection: r, bones: b, .. } = self.weights;
         let loss = equation_2.clone() * latent
             + vertices.clone() * v
@@ -145,40 +164,12 @@ impl Losses {
         self.weights.autoencoder
     }
 
-    /// Mean length of differences `[3·batch, points]` (normalised), centimetres.
-    fn distance_cm(&self, difference: Tensor<2>, len: usize) -> Tensor<1> {
-        self.length_m(difference, len).mean() * 100.0
-    }
-
-    fn length_m(&self, difference: Tensor<2>, len: usize) -> Tensor<3> {
-        let [_, points] = difference.dims();
-        let squares = difference.square().reshape([len, 3, points]).sum_dim(1);
-        (squares * (self.scale_m * self.scale_m) + SMALLEST_SQUARE_M2).sqrt()
-    }
-
-    /// The same on the sketch plane.
-    fn flat_distance_cm(&self, difference: Tensor<2>, len: usize) -> Tensor<1> {
-        let [_, points] = difference.dims();
-        let flat = difference.square().reshape([len, 3, points]).narrow(1, 0, 2).sum_dim(1);
-        (flat * (self.scale_m * self.scale_m) + SMALLEST_SQUARE_M2).sqrt().mean() * 100.0
-    }
-
-    fn bone_error_percent(&self, codes_by_axis: Tensor<2>, batch: &Tensors) -> Tensor<1> {
-        let [len, bones] = batch.bone_lengths.dims();
-        let turned = codes_by_axis.matmul(self.bones.clone()).reshape([len, 3, bones]) * self.scale_m;
-        let vectors = turned + self.mean_bones.clone();
-        let lengths = (vectors.square().sum_dim(1) + SMALLEST_SQUARE_M2).sqrt().reshape([len, bones]);
-        ((lengths - batch.bone_lengths.clone()).abs() / batch.bone_lengths.clone()).mean() * 100.0
-    }
-}
-
-impl Tensors {
     /// Brings a batch to the device.
-    pub(crate) fn new(batch: &Batch, noise: Vec<f32>, scale: &CodeScale, device: &Device) -> Self {
+    pub(crate) fn tensors(&self, batch: &Batch, noise: Vec<f32>, scale: &CodeScale, device: &Device) -> Tensors {
         let width = scale.mean.len();
         let recip = scale.scale.recip();
         let codes: Vec<f32> = batch
-            .coefficients
+            .codes
             .chunks_exact(width)
             .flat_map(|body| body.iter().zip(&scale.mean).map(|(a, mean)| (a - mean) * recip))
             .collect();
@@ -186,13 +177,19 @@ impl Tensors {
             let shape = [batch.len, numbers.len() / batch.len.max(1)];
             Tensor::<2>::from_data(TensorData::new(numbers, shape), device)
         };
-        Self {
-            codes: tensor(codes),
+        let codes = tensor(codes);
+        Tensors {
+            truth: self.points(codes.clone()),
+            codes,
             inputs: tensor(batch.inputs.clone()),
             noise: tensor(noise),
-            bone_lengths: tensor(batch.bone_lengths.clone()),
         }
     }
+}
+
+/// Lengths of vectors along dimension 1.
+fn length(vectors: Tensor<3>) -> Tensor<3> {
+    (vectors.square().sum_dim(1) + SMALLEST_SQUARE_M2).sqrt()
 }
 
 /// The values of terms; `None` when the device fails to hand them out.
@@ -200,9 +197,13 @@ pub(crate) fn values(terms: Terms) -> Result<Vec<(&'static str, f64)>, TrainErro
     terms
         .into_iter()
         .map(|(name, term)| {
-            let data = term.try_into_data().map_err(|e| TrainError::Backend(format!("{e:?}")))?;
+            let data = term
+                .try_into_data()
+                .map_err(|e| TrainError::Backend(format!("{e:?}")))?;
             let value = data.as_slice::<f32>().ok().and_then(|s| s.first().copied());
-            value.map(|v| (name, f64::from(v))).ok_or_else(|| TrainError::Backend(format!("no number for {name}")))
+            value
+                .map(|v| (name, f64::from(v)))
+                .ok_or_else(|| TrainError::Backend(format!("no number for {name}")))
         })
         .collect()
 }

@@ -17,10 +17,11 @@ mod init;
 mod log;
 mod losses;
 mod networks;
+mod plot;
 mod progress;
 mod run;
 
-pub use config::{LossWeights, StageConfig, TrainConfig};
+pub use config::{HiddenLayers, LossWeights, StageConfig, TrainConfig};
 pub use error::TrainError;
 pub use log::{LossLog, LossRecord};
 pub use progress::{Progress, Quiet, StageName};

@@ -1,4 +1,4 @@
-//! The networks in training: Burn modules that speak normalised coefficients.
+//! The networks in training: Burn modules that speak normalised codes.
 
 use burn::module::Module;
 use burn::tensor::Device;
@@ -55,18 +55,40 @@ impl Networks {
 impl NetworkWeights {
     /// Every array with a name, in a fixed order.
     pub(crate) fn arrays(&mut self) -> Vec<(String, &mut Vec<f32>)> {
-        let Encoder3dWeights { trunk, mean, log_variance } = &mut self.encoder3d;
+        let Encoder3dWeights {
+            trunk,
+            mean,
+            log_variance,
+        } = &mut self.encoder3d;
         let layers = trunk
             .layers
             .iter_mut()
             .enumerate()
             .map(|(i, layer)| (format!("encoder3d.trunk.{i}"), layer))
-            .chain([("encoder3d.mean".to_owned(), mean), ("encoder3d.log_variance".to_owned(), log_variance)])
-            .chain(self.head.layers.iter_mut().enumerate().map(|(i, layer)| (format!("head.{i}"), layer)))
-            .chain(self.encoder2d.layers.iter_mut().enumerate().map(|(i, layer)| (format!("encoder2d.{i}"), layer)));
+            .chain([
+                ("encoder3d.mean".to_owned(), mean),
+                ("encoder3d.log_variance".to_owned(), log_variance),
+            ])
+            .chain(
+                self.head
+                    .layers
+                    .iter_mut()
+                    .enumerate()
+                    .map(|(i, layer)| (format!("head.{i}"), layer)),
+            )
+            .chain(
+                self.encoder2d
+                    .layers
+                    .iter_mut()
+                    .enumerate()
+                    .map(|(i, layer)| (format!("encoder2d.{i}"), layer)),
+            );
         layers
             .flat_map(|(name, layer)| {
-                [(format!("{name}.weight"), &mut layer.weight), (format!("{name}.bias"), &mut layer.bias)]
+                [
+                    (format!("{name}.weight"), &mut layer.weight),
+                    (format!("{name}.bias"), &mut layer.bias),
+                ]
             })
             .collect()
     }

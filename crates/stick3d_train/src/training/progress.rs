@@ -3,7 +3,9 @@
 use super::LossRecord;
 
 /// A stage of training.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 pub enum StageName {
     /// Encoder3D and Decoder.
     Autoencoder,

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use burn::optim::GradientsParams;
 use burn::tensor::{Device, Tensor};
-use glam::Vec3;
 use rayon::prelude::*;
 use stick3d_figure::figure::Figure;
 use stick3d_figure::regressor::JointRegressor;
@@ -17,8 +16,8 @@ use super::init::initial_weights;
 use super::log::{LossLog, LossRecord};
 use super::losses::{CodeScale, Losses, Tensors, Terms, values};
 use super::networks::{NetworkWeights, Networks};
-use super::{Progress, StageConfig, StageName, TrainConfig, TrainError};
-use crate::dataset::{Batcher, BasisFit, BodySet, PoseStreams, SkinBasis, random};
+use super::{Progress, StageConfig, StageName, TrainConfig, TrainError, plot};
+use crate::dataset::{BasisFit, Batcher, BodySet, PoseStreams, SkinBasis, random, rounded};
 use crate::rig::{Pose, Rig, regressor};
 
 /// What a run learns from.
@@ -70,7 +69,11 @@ pub fn train(
     };
     let (weights, log) = run.stages(checkpoint, run_folder, progress)?;
     let model = export::model(input, config, &run, weights)?;
-    Ok(Trained { model, log, basis_fit: run.basis_fit })
+    Ok(Trained {
+        model,
+        log,
+        basis_fit: run.basis_fit,
+    })
 }
 
 /// Everything that stays the same over a run.
@@ -96,18 +99,20 @@ impl<'r, 'a> Run<'r, 'a> {
         config: &'r TrainConfig,
         progress: &dyn Progress,
     ) -> Result<Self, TrainError> {
+        config.validate()?;
         let TrainInput { figure, rig, .. } = *input;
         let regressor = regressor(figure, rig)?;
         let root = figure.root;
 
-        progress.begin("fitting the basis", config.basis.poses);
-        let meshes = sample_meshes(input, &regressor, config.basis.poses, BASIS_STREAM, progress);
-        let basis = SkinBasis::fit(rig, &regressor, root, config.basis, meshes.into_par_iter())?;
-        let fresh = sample_meshes(input, &regressor, 64, 2 * BASIS_STREAM, &super::Quiet);
-        let basis_fit = basis.measure(&fresh);
+        progress.begin("fitting the skin", config.basis.poses);
+        let sample = |count, first_stream| sample_poses(input, count, first_stream);
+        let poses = sample(config.basis.poses, BASIS_STREAM);
+        let basis = SkinBasis::fit(rig, &regressor, root, config.basis, &poses)?;
+        progress.advance(config.basis.poses);
+        let basis_fit = basis.measure(rig, &regressor, root, &sample(64, 2 * BASIS_STREAM));
         progress.note(&format!(
-            "basis of rank {}: vertices off by {:.2} mm on average, {:.2} mm for 99 %, {:.1} mm at most",
-            basis.rank(),
+            "skin of {} bones: vertices off by {:.2} mm on average, {:.2} mm for 99 %, {:.1} mm at most",
+            basis.rotations().bone_count,
             1e3 * basis_fit.mean_m,
             1e3 * basis_fit.p99_m,
             1e3 * basis_fit.max_m
@@ -115,14 +120,15 @@ impl<'r, 'a> Run<'r, 'a> {
 
         progress.begin("posing bodies", config.sampled_bodies + input.library.len());
         let advance = |steps| progress.advance(steps);
-        let mut bodies =
-            BodySet::sample(rig, &regressor, root, &basis, input.streams, config.sampled_bodies, &advance);
-        let library = BodySet::from_poses(rig, &regressor, root, &basis, input.library.iter().cloned(), &advance);
+        let mut bodies = BodySet::sample(rig, &basis, input.streams, config.sampled_bodies, &advance);
+        let library = BodySet::from_poses(rig, &basis, input.library.iter().cloned(), &advance);
         for _ in 0..config.library_repeats {
             bodies.extend(library.clone());
         }
         if bodies.len == 0 {
-            return Err(TrainError::Config("there are no bodies to train on".to_owned()));
+            return Err(TrainError::Config(
+                "there are no bodies to train on".to_owned(),
+            ));
         }
         let scale = code_scale(&bodies, config);
         let (low, high) = rig.mesh.bounds();
@@ -131,15 +137,33 @@ impl<'r, 'a> Run<'r, 'a> {
         let losses = Losses::new(figure, &basis, &scale, extent_m, config.loss, &device);
         let data_hash = bodies.hash();
         let identity = export::hash_text(&format!("{config:?} {data_hash}"));
-        Ok(Self { input, config, device, regressor, basis, basis_fit, scale, extent_m, data_hash, bodies, losses, identity })
+        Ok(Self {
+            input,
+            config,
+            device,
+            regressor,
+            basis,
+            basis_fit,
+            scale,
+            extent_m,
+            data_hash,
+            bodies,
+            losses,
+            identity,
+        })
     }
 
     fn initial_weights(&self) -> NetworkWeights {
         let figure = self.input.figure;
         let vertex_count = self.input.rig.mesh.positions.len();
-        let sizes = self.config.architecture.sizes(figure.input_len(), self.config.latent_len, vertex_count);
+        let architecture = self.config.architecture(self.basis.code_columns());
+        let sizes = architecture.sizes(figure.input_len(), self.config.latent_len, vertex_count);
         let (encoder3d, head, encoder2d) = initial_weights(&sizes, self.config.seed);
-        NetworkWeights { encoder3d, head, encoder2d }
+        NetworkWeights {
+            encoder3d,
+            head,
+            encoder2d,
+        }
     }
 
     fn batcher(&self) -> Batcher<'_> {
@@ -166,20 +190,24 @@ impl<'r, 'a> Run<'r, 'a> {
                 state.adam = Adam::default();
             }
             while state.epoch < stage.epochs {
-                let (trained, record) = self.epoch(networks, *name, *stage, &mut state, progress)?;
+                let (trained, record) =
+                    self.epoch(networks, *name, *stage, &mut state, progress)?;
                 networks = trained;
                 progress.epoch(&record);
                 check_loss(&record)?;
                 state.log.records.push(record);
                 state.epoch += 1;
                 let stop = progress.should_stop();
-                let due = state.epoch % self.config.checkpoint_every.max(1) == 0 || state.epoch == stage.epochs;
+                let due = state.epoch % self.config.checkpoint_every.max(1) == 0
+                    || state.epoch == stage.epochs;
                 if let Some(folder) = run_folder.filter(|_| stop || due) {
                     state.weights = networks.to_weights()?;
                     self.leave(folder, &mut state)?;
                 }
                 if stop {
-                    return Err(TrainError::Stopped { epochs: state.log.records.len() });
+                    return Err(TrainError::Stopped {
+                        epochs: state.log.records.len(),
+                    });
                 }
             }
             state.stage += 1;
@@ -193,9 +221,11 @@ impl<'r, 'a> Run<'r, 'a> {
         state.save(&folder.join("checkpoint.safetensors"), &self.identity)?;
         let write = |name: &str, bytes: &[u8]| {
             let path = folder.join(name);
-            stick3d_model::files::write_atomically(&path, bytes).map_err(|source| TrainError::Io { path, source })
+            stick3d_model::files::write_atomically(&path, bytes)
+                .map_err(|source| TrainError::Io { path, source })
         };
-        write("losses.csv", state.log.to_csv().as_bytes())
+        write("losses.csv", state.log.to_csv().as_bytes())?;
+        write("losses.png", &plot::png(&state.log)?)
     }
 
     fn epoch(
@@ -211,16 +241,18 @@ impl<'r, 'a> Run<'r, 'a> {
         let epoch = ((state.stage as u64) << 16) | state.epoch as u64;
         let order = batcher.order(epoch);
         let count = batcher.batches_per_epoch();
-        progress.begin(&format!("{} {}/{}", name.label(), state.epoch + 1, stage.epochs), count);
+        progress.begin(
+            &format!("{} {}/{}", name.label(), state.epoch + 1, stage.epochs),
+            count,
+        );
         let mut sums: Vec<(String, f64)> = vec![];
         let mut loss_sum = 0.0;
         for index in 0..count {
             let batch = batcher.batch(epoch, index, &order)?;
             let noise = batcher.noise(epoch, index, batch.len * self.config.latent_len);
-            let tensors = Tensors::new(&batch, noise, &self.scale, &self.device);
-            let done = (state.epoch * count + index) as f64 / (stage.epochs * count) as f64;
-            let warm_up = ((state.epoch * count + index + 1) as f64 / 100.0).min(1.0);
-            let rate = stage.learning_rate * warm_up * cosine(done);
+            let tensors = self.losses.tensors(&batch, noise, &self.scale, &self.device);
+            let rate =
+                stage.learning_rate * schedule(state.epoch * count + index, stage.epochs * count);
             let (stepped, terms) = self.step(networks, name, &tensors, &mut state.adam, rate)?;
             networks = stepped;
             for (term, value) in values(terms)? {
@@ -232,12 +264,13 @@ impl<'r, 'a> Run<'r, 'a> {
             }
             progress.advance(1);
         }
-        sums.iter_mut().for_each(|(_, sum)| *sum /= count as f64);
+        sums.iter_mut()
+            .for_each(|(_, sum)| *sum = rounded(*sum / count as f64));
         let record = LossRecord {
             stage: name,
             epoch: state.epoch,
             epochs: stage.epochs,
-            loss: loss_sum / count as f64,
+            loss: rounded(loss_sum / count as f64),
             terms: sums,
         };
         Ok((networks, record))
@@ -264,7 +297,10 @@ impl<'r, 'a> Run<'r, 'a> {
                 Ok((Networks { vae, encoder2d }, terms))
             }
             StageName::Encoder2d => {
-                let frozen = Networks { vae: vae.clone().no_grad(), encoder2d };
+                let frozen = Networks {
+                    vae: vae.clone().no_grad(),
+                    encoder2d,
+                };
                 let (mean, _) = frozen.vae.encoder3d.forward(batch.codes.clone());
                 let (loss, terms) = self.losses.sketch(&frozen, mean.detach(), batch);
                 let (gradients, terms) = (loss.backward(), with_loss(loss, terms));
@@ -282,7 +318,10 @@ impl<'r, 'a> Run<'r, 'a> {
                 let loss = sketch + autoencoder * self.losses.autoencoder_weight();
                 let (gradients, terms) = (loss.backward(), with_loss(loss, terms));
                 let gradients = GradientsParams::from_grads(gradients, &networks);
-                Ok((adam.step(networks, gradients, rate).map_err(backend)?, terms))
+                Ok((
+                    adam.step(networks, gradients, rate).map_err(backend)?,
+                    terms,
+                ))
             }
         }
     }
@@ -297,53 +336,58 @@ fn check_loss(record: &LossRecord) -> Result<(), TrainError> {
     if record.loss.is_finite() {
         return Ok(());
     }
-    Err(TrainError::Diverged { stage: record.stage.label(), epoch: record.epoch, loss: record.loss })
+    Err(TrainError::Diverged {
+        stage: record.stage.label(),
+        epoch: record.epoch,
+        loss: record.loss,
+    })
 }
 
-/// From 1 to a hundredth along half a cosine while `done` goes from 0 to 1.
-fn cosine(done: f64) -> f64 {
-    0.01 + 0.99 * 0.5 * (1.0 + (std::f64::consts::PI * done).cos())
+/// The learning rate's factor at one of `steps` steps: up to 1 over the first few, then down to a hundredth along half
+/// a cosine.
+fn schedule(step: usize, steps: usize) -> f64 {
+    let warm_up = ((step + 1) as f64 / (steps as f64 / 20.0).clamp(1.0, 100.0)).min(1.0);
+    let done = step as f64 / steps.max(1) as f64;
+    warm_up * (0.01 + 0.99 * 0.5 * (1.0 + (std::f64::consts::PI * done).cos()))
 }
 
-/// Posed meshes, centred on the root joint.
-fn sample_meshes(
-    input: &TrainInput<'_>,
-    regressor: &JointRegressor,
-    count: usize,
-    first_stream: u64,
-    progress: &dyn Progress,
-) -> Vec<Vec<Vec3>> {
+/// Some poses, from several streams side by side.
+fn sample_poses(input: &TrainInput<'_>, count: usize, first_stream: u64) -> Vec<Pose> {
     const STREAMS: usize = 16;
     (0..STREAMS)
         .into_par_iter()
         .flat_map_iter(|stream| {
             let share = count / STREAMS + usize::from(stream < count % STREAMS);
-            (input.streams)(first_stream + stream as u64).take(share).map(|pose| {
-                let mut mesh = vec![];
-                crate::dataset::posed(input.rig, regressor, input.figure.root, &pose, &mut mesh);
-                progress.advance(1);
-                mesh
-            })
+            (input.streams)(first_stream + stream as u64).take(share).collect::<Vec<_>>()
         })
         .collect()
 }
 
-/// The mean of turned bodies' coefficients, and how far a coefficient is from it on average.
+/// The mean of turned bodies' codes, and how far a number of a code is from it on average.
 fn code_scale(bodies: &BodySet, config: &TrainConfig) -> CodeScale {
-    let width = bodies.coefficients_of(0).len();
+    let width = bodies.code_of(0).len();
     let mut rng = random(config.seed, "scale", 0);
     let draws = bodies.len.max(5000);
     let (mut sum, mut squares) = (vec![0.0_f64; width], 0.0_f64);
     let mut turned = vec![0.0; width];
     for draw in 0..draws {
         let turn = config.rotations.sample(&mut rng);
-        crate::dataset::turn_coefficients(turn, bodies.coefficients_of(draw % bodies.len), &mut turned);
-        sum.iter_mut().zip(&turned).for_each(|(sum, x)| *sum += f64::from(*x));
+        crate::dataset::turn_coefficients(
+            turn,
+            bodies.code_of(draw % bodies.len),
+            &mut turned,
+        );
+        sum.iter_mut()
+            .zip(&turned)
+            .for_each(|(sum, x)| *sum += f64::from(*x));
         squares += turned.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>();
     }
     let count = draws as f64;
     let mean: Vec<f32> = sum.iter().map(|x| (x / count) as f32).collect();
     let of_mean: f64 = mean.iter().map(|x| f64::from(*x).powi(2)).sum();
     let variance = (squares / count - of_mean).max(1e-12) / width as f64;
-    CodeScale { mean, scale: variance.sqrt() as f32 }
+    CodeScale {
+        mean,
+        scale: variance.sqrt() as f32,
+    }
 }
