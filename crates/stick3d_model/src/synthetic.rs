@@ -4,7 +4,9 @@ use stick3d_figure::figure::Figure;
 use stick3d_figure::regressor::JointRegressor;
 
 use crate::architecture::Architecture;
-use crate::final_layer::{BasisLayer, DenseLayer, FinalLayer, Rotations, SkinnedLayer, SkinnedParts};
+use crate::final_layer::{
+    BasisLayer, DenseLayer, FinalLayer, Rotations, SkinnedLayer, SkinnedParts,
+};
 use crate::metadata::{FORMAT_VERSION, Metadata, Normalisation, TOOL_VERSION, topology_hash};
 use crate::model::{Model, ModelParts};
 use crate::weights::{Encoder3dWeights, LinearWeights, MlpWeights};
@@ -111,7 +113,10 @@ fn final_layer(kind: Kind, len: usize, vertex_count: usize, numbers: &mut Number
         }
         Kind::Skinned | Kind::Rotations => {
             let bone_count = 4;
-            let turning = Rotations { bone_count: 3, halves: vec![[0, 1], [2, 1]] };
+            let turning = Rotations {
+                bone_count: 3,
+                halves: vec![[0, 1], [2, 1]],
+            };
             let rotations = (kind == Kind::Rotations).then_some(turning);
             let rank = rotations.as_ref().map_or(RANK, Rotations::feature_columns);
             let row = |v: usize| (0..=(v % 3)).map(move |i| ((v + i) % bone_count) as u16);

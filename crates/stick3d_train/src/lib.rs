@@ -6,7 +6,6 @@
 pub mod bake;
 pub mod dataset;
 pub mod evaluate;
-pub mod human;
 pub mod pose;
 pub mod render;
 pub mod rig;

@@ -167,7 +167,7 @@ fn numbers_that_are_not_finite_are_refused() {
     let bytes = write(&parts).unwrap();
     match read(&bytes) {
         Err(ModelError::NotFinite { name, index }) => {
-            assert_eq!((name.as_str(), index), ("head.1.bias", 3))
+            assert_eq!((name.as_str(), index), ("head.1.bias", 3));
         }
         other => panic!("{other:?}"),
     }

@@ -106,7 +106,12 @@ impl Arrays {
                 );
                 if let Some(rotations) = &parts.rotations {
                     let shape = [rotations.halves.len(), 2];
-                    self.put("final.skinned.halves", Dtype::U16, &shape, rotations.halves.as_flattened());
+                    self.put(
+                        "final.skinned.halves",
+                        Dtype::U16,
+                        &shape,
+                        rotations.halves.as_flattened(),
+                    );
                 }
                 let shape = [skinned.rank(), 4 * parts.bone_count];
                 self.put_f32("final.skinned.expansion", &shape, &parts.expansion);

@@ -129,7 +129,11 @@ impl FinalLayer {
     ///
     /// # Panics
     /// When `coefficients` has another length, or `scratch` was made by a layer of another shape.
-    pub fn features<'a>(&self, coefficients: &'a [f32], scratch: &'a mut FinalScratch) -> &'a [f32] {
+    pub fn features<'a>(
+        &self,
+        coefficients: &'a [f32],
+        scratch: &'a mut FinalScratch,
+    ) -> &'a [f32] {
         match self.rotations() {
             Some(rotations) => {
                 rotations.expand(coefficients, &mut scratch.features);

@@ -26,10 +26,18 @@ pub(crate) const LEAST_COSINE: f32 = 0.05;
 impl Rotations {
     /// Checks that the pairs name bones there are.
     pub(crate) fn validate(&self) -> Result<(), FinalLayerError> {
-        match self.halves.as_flattened().iter().find(|bone| usize::from(**bone) >= self.bone_count) {
+        match self
+            .halves
+            .as_flattened()
+            .iter()
+            .find(|bone| usize::from(**bone) >= self.bone_count)
+        {
             Some(bone) => {
                 let problem = format!("bone {bone} is named, {} turn", self.bone_count);
-                Err(FinalLayerError { what: "halves", problem })
+                Err(FinalLayerError {
+                    what: "halves",
+                    problem,
+                })
             }
             None => Ok(()),
         }
@@ -50,7 +58,11 @@ impl Rotations {
     /// The raw numbers of given rotations: their first two columns, `[3][2 · bone_count]`.
     #[must_use]
     pub fn code(&self, rotations: &[Mat3]) -> Vec<f32> {
-        let column = |axis: usize| rotations.iter().flat_map(move |r| [r.x_axis[axis], r.y_axis[axis]]);
+        let column = |axis: usize| {
+            rotations
+                .iter()
+                .flat_map(move |r| [r.x_axis[axis], r.y_axis[axis]])
+        };
         (0..3).flat_map(column).collect()
     }
 
@@ -63,7 +75,12 @@ impl Rotations {
         let (from, to) = (self.code_columns(), self.feature_columns());
         let column = |j: usize| Vec3::new(code[j], code[from + j], code[2 * from + j]);
         for bone in 0..self.bone_count {
-            put(features, to, bone, gram_schmidt(column(2 * bone), column(2 * bone + 1)));
+            put(
+                features,
+                to,
+                bone,
+                gram_schmidt(column(2 * bone), column(2 * bone + 1)),
+            );
         }
         for (index, [a, b]) in self.halves.iter().enumerate() {
             let [a, b] = [*a, *b].map(|bone| get(features, to, usize::from(bone)));
@@ -116,13 +133,19 @@ mod tests {
             let b = a * Quat::from_axis_angle(Vec3::new(0.6, -0.48, 0.64), angle);
             let found = half_way(Mat3::from_quat(a), Mat3::from_quat(b));
             let expected = Mat3::from_quat(a.slerp(b, 0.5));
-            assert!(found.abs_diff_eq(expected, 1e-5), "{angle}: {found} {expected}");
+            assert!(
+                found.abs_diff_eq(expected, 1e-5),
+                "{angle}: {found} {expected}"
+            );
         }
     }
 
     #[test]
     fn any_numbers_become_rotations_and_rotations_stay() {
-        let rotations = Rotations { bone_count: 2, halves: vec![[0, 1]] };
+        let rotations = Rotations {
+            bone_count: 2,
+            halves: vec![[0, 1]],
+        };
         let mut features = vec![0.0; 27];
         let code: Vec<f32> = (0..12).map(|i| (1.3 * i as f32).sin() * 3.0).collect();
         rotations.expand(&code, &mut features);
@@ -132,7 +155,10 @@ mod tests {
         }
         let given = [Mat3::from_rotation_x(0.7), Mat3::from_rotation_z(-1.1)];
         rotations.expand(&rotations.code(&given), &mut features);
-        assert!(get(&features, 9, 0).abs_diff_eq(given[0], 1e-6) && get(&features, 9, 1).abs_diff_eq(given[1], 1e-6));
+        assert!(
+            get(&features, 9, 0).abs_diff_eq(given[0], 1e-6)
+                && get(&features, 9, 1).abs_diff_eq(given[1], 1e-6)
+        );
         rotations.expand(&[0.0; 12], &mut features);
         assert!(features.iter().all(|x| x.is_finite()));
     }

@@ -102,7 +102,11 @@ impl SkinnedLayer {
     /// How many numbers the head gives.
     #[must_use]
     pub fn coefficient_len(&self) -> usize {
-        3 * self.parts.rotations.as_ref().map_or(self.rank, Rotations::code_columns)
+        3 * self
+            .parts
+            .rotations
+            .as_ref()
+            .map_or(self.rank, Rotations::code_columns)
     }
 
     /// How many columns the expansion has.

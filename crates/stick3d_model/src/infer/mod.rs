@@ -184,7 +184,9 @@ impl Inference {
         let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
         match &mut self.joints {
             JointMap::Linear { rows, rank } => {
-                let features = self.final_layer.features(coefficients, &mut self.final_scratch);
+                let features = self
+                    .final_layer
+                    .features(coefficients, &mut self.final_scratch);
                 for (joint, row) in joints.iter_mut().zip(rows.chunks_exact(*rank)) {
                     let along = |axis: usize| -> f32 {
                         row.iter()

@@ -119,10 +119,19 @@ impl FinalModule {
         let shape = [layer.vertex_count(), layer.matrix_columns()];
         let columns = Tensor::<2>::from_data(TensorData::new(matrix, shape), device).transpose();
         let (turning_bones, halves) = layer.rotations().map_or((0, vec![]), |rotations| {
-            let halves = rotations.halves.as_flattened().iter().map(|bone| usize::from(*bone)).collect();
+            let halves = rotations
+                .halves
+                .as_flattened()
+                .iter()
+                .map(|bone| usize::from(*bone))
+                .collect();
             (rotations.bone_count, halves)
         });
-        Self::Linear(LinearFinal { columns, turning_bones, halves })
+        Self::Linear(LinearFinal {
+            columns,
+            turning_bones,
+            halves,
+        })
     }
 
     /// # Shapes

@@ -48,10 +48,19 @@ fn half_way(turns: Tensor<4>, halves: &[usize], batch: usize) -> Tensor<4> {
     let device = turns.device();
     let pairs = halves.len() / 2;
     let pick = |offset: usize| {
-        let bones: Vec<i64> = halves.iter().skip(offset).step_by(2).map(|bone| *bone as i64).collect();
+        let bones: Vec<i64> = halves
+            .iter()
+            .skip(offset)
+            .step_by(2)
+            .map(|bone| *bone as i64)
+            .collect();
         let indices = Tensor::<1, Int>::from_data(TensorData::new(bones, [pairs]), &device);
         // [batch · pair, axis, column]
-        turns.clone().select(2, indices).swap_dims(1, 2).reshape([batch * pairs, 3, 3])
+        turns
+            .clone()
+            .select(2, indices)
+            .swap_dims(1, 2)
+            .reshape([batch * pairs, 3, 3])
     };
     let (a, b) = (pick(0), pick(1));
     let between = a.clone().swap_dims(1, 2).matmul(b);

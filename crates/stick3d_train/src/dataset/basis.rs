@@ -92,11 +92,16 @@ impl SkinBasis {
                 let mut mesh = vec![];
                 posed(rig, regressor, root, pose, &mut mesh);
                 let moments = probe.moments(&mesh);
-                let moments = DMatrix::from_fn(moments.len(), 3, |i, axis| moments[i][axis] / count);
-                (skin.whitened(&moments), features(rig, &rotations, &table.rig_bones, pose))
+                let moments =
+                    DMatrix::from_fn(moments.len(), 3, |i, axis| moments[i][axis] / count);
+                (
+                    skin.whitened(&moments),
+                    features(rig, &rotations, &table.rig_bones, pose),
+                )
             })
             .collect();
-        let blended = skin.centring.clone() * blend_skinning(rig, &table, rotations.feature_columns());
+        let blended =
+            skin.centring.clone() * blend_skinning(rig, &table, rotations.feature_columns());
         let expansion = skin.corrected(blended, &samples)?;
         // Column-major storage is the order wanted: one row of the layer's expansion per feature.
         let expansion = expansion.as_slice().iter().map(|x| *x as f32).collect();
@@ -105,11 +110,21 @@ impl SkinBasis {
         let matrix = layer.matrix().unwrap_or_default();
         let columns = layer.matrix_columns();
         let joint_row = |row: &Vec<(u32, f32)>| -> Vec<f32> {
-            let entry = |j: usize| row.iter().map(|&(v, w)| w * matrix[v as usize * columns + j]).sum();
+            let entry = |j: usize| {
+                row.iter()
+                    .map(|&(v, w)| w * matrix[v as usize * columns + j])
+                    .sum()
+            };
             (0..columns).map(entry).collect()
         };
         let joint_rows = regressor.rows.iter().flat_map(joint_row).collect();
-        Ok(Self { layer, rotations, rig_bones: table.rig_bones, matrix, joint_rows })
+        Ok(Self {
+            layer,
+            rotations,
+            rig_bones: table.rig_bones,
+            matrix,
+            joint_rows,
+        })
     }
 
     /// The final layer that turns codes into vertices.
@@ -145,7 +160,8 @@ impl SkinBasis {
     /// The numbers `[3][code_columns]` of a pose: what the networks encode and decode.
     #[must_use]
     pub fn code(&self, rig: &Rig, pose: &Pose) -> Vec<f32> {
-        self.rotations.code(&bone_matrices(rig, &self.rig_bones, pose))
+        self.rotations
+            .code(&bone_matrices(rig, &self.rig_bones, pose))
     }
 
     /// The joints of a code, metres, the root joint at the origin.
@@ -156,7 +172,10 @@ impl SkinBasis {
         self.rotations.expand(code, &mut features);
         let joint = |row: &[f32]| {
             let along = |axis: usize| -> f32 {
-                row.iter().zip(&features[axis * columns..]).map(|(a, b)| a * b).sum()
+                row.iter()
+                    .zip(&features[axis * columns..])
+                    .map(|(a, b)| a * b)
+                    .sum()
             };
             Vec3::new(along(0), along(1), along(2))
         };
@@ -165,14 +184,25 @@ impl SkinBasis {
 
     /// How far posed meshes are from their images.
     #[must_use]
-    pub fn measure(&self, rig: &Rig, regressor: &JointRegressor, root: usize, poses: &[Pose]) -> BasisFit {
+    pub fn measure(
+        &self,
+        rig: &Rig,
+        regressor: &JointRegressor,
+        root: usize,
+        poses: &[Pose],
+    ) -> BasisFit {
         let mut scratch = self.layer.scratch();
         let mut image = vec![[0.0; 3]; self.layer.vertex_count()];
         let (mut mesh, mut distances) = (vec![], vec![]);
         for pose in poses {
             posed(rig, regressor, root, pose, &mut mesh);
-            self.layer.evaluate(&self.code(rig, pose), &mut scratch, &mut image);
-            distances.extend(mesh.iter().zip(&image).map(|(a, b)| a.distance(Vec3::from(*b))));
+            self.layer
+                .evaluate(&self.code(rig, pose), &mut scratch, &mut image);
+            distances.extend(
+                mesh.iter()
+                    .zip(&image)
+                    .map(|(a, b)| a.distance(Vec3::from(*b))),
+            );
         }
         distances.sort_by(f32::total_cmp);
         let last = distances.len().saturating_sub(1);
@@ -210,14 +240,20 @@ fn parts(
 
 fn bone_matrices(rig: &Rig, rig_bones: &[usize], pose: &Pose) -> Vec<Mat3> {
     let posed = rig.bone_transforms(pose);
-    rig_bones.iter().map(|bone| Mat3::from_quat(posed[*bone].0)).collect()
+    rig_bones
+        .iter()
+        .map(|bone| Mat3::from_quat(posed[*bone].0))
+        .collect()
 }
 
 /// The features of a pose, `[feature column][axis]`.
 fn features(rig: &Rig, rotations: &Rotations, rig_bones: &[usize], pose: &Pose) -> DMatrix<f64> {
     let columns = rotations.feature_columns();
     let mut flat = vec![0.0; 3 * columns];
-    rotations.expand(&rotations.code(&bone_matrices(rig, rig_bones, pose)), &mut flat);
+    rotations.expand(
+        &rotations.code(&bone_matrices(rig, rig_bones, pose)),
+        &mut flat,
+    );
     DMatrix::from_fn(columns, 3, |j, axis| f64::from(flat[axis * columns + j]))
 }
 
@@ -236,7 +272,8 @@ fn blend_skinning(rig: &Rig, table: &InfluenceTable, columns: usize) -> DMatrix<
         while let Some(parent) = bones[child].parent {
             if let Some(above) = number(parent) {
                 for j in 0..3 {
-                    matrix[(4 * index + 3, 3 * above + j)] += f64::from(bones[child].head[j] - bones[parent].head[j]);
+                    matrix[(4 * index + 3, 3 * above + j)] +=
+                        f64::from(bones[child].head[j] - bones[parent].head[j]);
                 }
             }
             child = parent;
@@ -294,7 +331,11 @@ impl CentredSkin {
             .map(|(i, value)| eigen.eigenvectors.column(i) / value.sqrt())
             .collect();
         let columns = &centring * DMatrix::from_columns(&kept);
-        Self { gram, centring, columns }
+        Self {
+            gram,
+            centring,
+            columns,
+        }
     }
 
     /// The orthonormal coordinates of a centred mesh with moments `Φᵀ · mesh / N`.

@@ -33,7 +33,7 @@ impl InfluenceTable {
         let mut shared: BTreeMap<(u16, u16), f64> = BTreeMap::new();
         for row in &rows {
             for_pairs(row, |pair, weight| {
-                *shared.entry(pair).or_default() += f64::from(weight)
+                *shared.entry(pair).or_default() += f64::from(weight);
             });
         }
         let mut pairs: Vec<((u16, u16), f64)> = shared.into_iter().collect();
@@ -52,7 +52,7 @@ impl InfluenceTable {
             .map(|mut row| {
                 let mut extra = vec![];
                 for_pairs(&row, |pair, weight| {
-                    extra.extend(number.get(&pair).map(|helper| (*helper, weight)))
+                    extra.extend(number.get(&pair).map(|helper| (*helper, weight)));
                 });
                 extra.sort_by_key(|(helper, _)| *helper);
                 row.extend(extra);

@@ -49,6 +49,8 @@ pub(crate) fn rounded(number: f64) -> f64 {
     (1e6 * number).round() / 1e6
 }
 
+#[cfg(test)]
+mod tests;
 
 #[cfg(test)]
 mod random_tests {

@@ -89,10 +89,13 @@ impl TrainConfig {
             hidden: HiddenLayers {
                 encoder3d: vec![512, 512],
                 head: vec![512, 512],
-                encoder2d: vec![1024, 1024, 1024],
+                encoder2d: vec![1024, 1024, 512],
             },
             latent_len: LATENT_LEN,
-            basis: BasisConfig { helpers: 32, poses: 2000 },
+            basis: BasisConfig {
+                helpers: 32,
+                poses: 2000,
+            },
             sampled_bodies: 40_000,
             library_repeats: 10,
             rotations: Rotations::SHIPPED,
@@ -104,15 +107,15 @@ impl TrainConfig {
             batch_size: 256,
             stages: [
                 StageConfig {
+                    epochs: 4,
+                    learning_rate: 1e-3,
+                },
+                StageConfig {
                     epochs: 10,
                     learning_rate: 1e-3,
                 },
                 StageConfig {
-                    epochs: 20,
-                    learning_rate: 1e-3,
-                },
-                StageConfig {
-                    epochs: 30,
+                    epochs: 12,
                     learning_rate: 1e-3,
                 },
             ],
@@ -123,11 +126,11 @@ impl TrainConfig {
                 latent: 1.0,
                 vertices: 1.0,
                 joints: 0.5,
-                reprojection: 0.5,
+                reprojection: 1.0,
                 bones: 0.2,
                 probes: 300,
             },
-            checkpoint_every: 5,
+            checkpoint_every: 2,
         }
     }
 
@@ -149,8 +152,17 @@ impl TrainConfig {
 
     /// The networks for codes of `code_columns` vectors.
     pub(crate) fn architecture(&self, code_columns: usize) -> Architecture {
-        let HiddenLayers { encoder3d, head, encoder2d } = self.hidden.clone();
-        Architecture::Basis { rank: code_columns, encoder3d, head, encoder2d }
+        let HiddenLayers {
+            encoder3d,
+            head,
+            encoder2d,
+        } = self.hidden.clone();
+        Architecture::Basis {
+            rank: code_columns,
+            encoder3d,
+            head,
+            encoder2d,
+        }
     }
 
     /// The stages with their names.

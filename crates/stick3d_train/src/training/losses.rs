@@ -78,7 +78,9 @@ impl Losses {
         }
         rows.extend(joint_rows);
         for &[a, b] in &figure.bones {
-            rows.extend((0..columns).map(|j| joint_rows[b * columns + j] - joint_rows[a * columns + j]));
+            rows.extend(
+                (0..columns).map(|j| joint_rows[b * columns + j] - joint_rows[a * columns + j]),
+            );
         }
         let shape = [rows.len() / columns, columns];
         let mean = TensorData::new(scale.mean.clone(), [1, scale.mean.len()]);
@@ -102,7 +104,9 @@ impl Losses {
         let raw = codes * self.scale + self.mean.clone();
         let features = rotation_features(raw, self.turning_bones, &self.halves);
         let [_, count] = self.points.dims();
-        let all = features.matmul(self.points.clone()).reshape([batch, 3, count]);
+        let all = features
+            .matmul(self.points.clone())
+            .reshape([batch, 3, count]);
         let bones = count - self.probes - self.joints;
         Points {
             probes: all.clone().narrow(2, 0, self.probes),
@@ -120,10 +124,20 @@ impl Losses {
         let of_codes = (codes.clone() - batch.codes.clone()).square().mean();
         let error = self.points(codes).probes - batch.truth.probes.clone();
         let squared = error.square().mean() / (self.extent_m * self.extent_m);
-        let divergence =
-            (mean.square() + log_variance.clone().exp() - log_variance - 1.0).sum_dim(1).mean() * 0.5;
-        let loss = (squared.clone() + of_codes.clone() * self.weights.code) * self.weights.alpha + divergence.clone();
-        (loss, vec![("mse", squared.detach()), ("code", of_codes.detach()), ("kl", divergence.detach())])
+        let divergence = (mean.square() + log_variance.clone().exp() - log_variance - 1.0)
+            .sum_dim(1)
+            .mean()
+            * 0.5;
+        let loss = (squared.clone() + of_codes.clone() * self.weights.code) * self.weights.alpha
+            + divergence.clone();
+        (
+            loss,
+            vec![
+                ("mse", squared.detach()),
+                ("code", of_codes.detach()),
+                ("kl", divergence.detach()),
+            ],
+        )
     }
 
     /// Equation 2, and how far the body decoded from the sketch is from the body drawn.
@@ -142,8 +156,16 @@ impl Losses {
         let reprojection = length(joint_difference.clone().narrow(1, 0, 2)).mean() * 100.0;
         let joints = length(joint_difference).mean() * 100.0;
         let true_lengths = length(truth.bones);
-        let bones = ((length(found.bones) - true_lengths.clone()).abs() / true_lengths).mean() * 100.0;
-        let LossWeights { latent, vertices: v, joints: j, reprojection: r, bones: b, .. } = self.weights;
+        let bones =
+            ((length(found.bones) - true_lengths.clone()).abs() / true_lengths).mean() * 100.0;
+        let LossWeights {
+            latent,
+            vertices: v,
+            joints: j,
+            reprojection: r,
+            bones: b,
+            ..
+        } = self.weights;
         let loss = equation_2.clone() * latent
             + vertices.clone() * v
             + joints.clone() * j
@@ -165,13 +187,23 @@ impl Losses {
     }
 
     /// Brings a batch to the device.
-    pub(crate) fn tensors(&self, batch: &Batch, noise: Vec<f32>, scale: &CodeScale, device: &Device) -> Tensors {
+    pub(crate) fn tensors(
+        &self,
+        batch: &Batch,
+        noise: Vec<f32>,
+        scale: &CodeScale,
+        device: &Device,
+    ) -> Tensors {
         let width = scale.mean.len();
         let recip = scale.scale.recip();
         let codes: Vec<f32> = batch
             .codes
             .chunks_exact(width)
-            .flat_map(|body| body.iter().zip(&scale.mean).map(|(a, mean)| (a - mean) * recip))
+            .flat_map(|body| {
+                body.iter()
+                    .zip(&scale.mean)
+                    .map(|(a, mean)| (a - mean) * recip)
+            })
             .collect();
         let tensor = |numbers: Vec<f32>| {
             let shape = [batch.len, numbers.len() / batch.len.max(1)];

@@ -38,7 +38,8 @@ fn draw(log: &LossLog) -> RgbaImage {
     let logs = series
         .iter()
         .flat_map(|(_, values)| values)
-        .filter_map(|(_, v)| (*v > 0.0).then(|| v.log10()));
+        .filter(|(_, v)| *v > 0.0)
+        .map(|(_, v)| v.log10());
     let (low, high) = logs.fold((f64::MAX, f64::MIN), |(low, high), v| {
         (low.min(v), high.max(v))
     });

@@ -120,7 +120,8 @@ impl<'r, 'a> Run<'r, 'a> {
 
         progress.begin("posing bodies", config.sampled_bodies + input.library.len());
         let advance = |steps| progress.advance(steps);
-        let mut bodies = BodySet::sample(rig, &basis, input.streams, config.sampled_bodies, &advance);
+        let mut bodies =
+            BodySet::sample(rig, &basis, input.streams, config.sampled_bodies, &advance);
         let library = BodySet::from_poses(rig, &basis, input.library.iter().cloned(), &advance);
         for _ in 0..config.library_repeats {
             bodies.extend(library.clone());
@@ -198,7 +199,9 @@ impl<'r, 'a> Run<'r, 'a> {
                 state.log.records.push(record);
                 state.epoch += 1;
                 let stop = progress.should_stop();
-                let due = state.epoch % self.config.checkpoint_every.max(1) == 0
+                let due = state
+                    .epoch
+                    .is_multiple_of(self.config.checkpoint_every.max(1))
                     || state.epoch == stage.epochs;
                 if let Some(folder) = run_folder.filter(|_| stop || due) {
                     state.weights = networks.to_weights()?;
@@ -250,7 +253,9 @@ impl<'r, 'a> Run<'r, 'a> {
         for index in 0..count {
             let batch = batcher.batch(epoch, index, &order)?;
             let noise = batcher.noise(epoch, index, batch.len * self.config.latent_len);
-            let tensors = self.losses.tensors(&batch, noise, &self.scale, &self.device);
+            let tensors = self
+                .losses
+                .tensors(&batch, noise, &self.scale, &self.device);
             let rate =
                 stage.learning_rate * schedule(state.epoch * count + index, stage.epochs * count);
             let (stepped, terms) = self.step(networks, name, &tensors, &mut state.adam, rate)?;
@@ -358,7 +363,9 @@ fn sample_poses(input: &TrainInput<'_>, count: usize, first_stream: u64) -> Vec<
         .into_par_iter()
         .flat_map_iter(|stream| {
             let share = count / STREAMS + usize::from(stream < count % STREAMS);
-            (input.streams)(first_stream + stream as u64).take(share).collect::<Vec<_>>()
+            (input.streams)(first_stream + stream as u64)
+                .take(share)
+                .collect::<Vec<_>>()
         })
         .collect()
 }
@@ -372,11 +379,7 @@ fn code_scale(bodies: &BodySet, config: &TrainConfig) -> CodeScale {
     let mut turned = vec![0.0; width];
     for draw in 0..draws {
         let turn = config.rotations.sample(&mut rng);
-        crate::dataset::turn_coefficients(
-            turn,
-            bodies.code_of(draw % bodies.len),
-            &mut turned,
-        );
+        crate::dataset::turn_coefficients(turn, bodies.code_of(draw % bodies.len), &mut turned);
         sum.iter_mut()
             .zip(&turned)
             .for_each(|(sum, x)| *sum += f64::from(*x));

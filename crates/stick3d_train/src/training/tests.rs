@@ -37,13 +37,20 @@ fn stream<'a>(number: u64) -> PoseStream<'a> {
 }
 
 fn config() -> TrainConfig {
-    let basis = BasisConfig { helpers: 4, poses: 48 };
+    let basis = BasisConfig {
+        helpers: 4,
+        poses: 48,
+    };
     let stage = |epochs| StageConfig {
         epochs,
         learning_rate: 4e-3,
     };
     TrainConfig {
-        hidden: HiddenLayers { encoder3d: vec![48], head: vec![48], encoder2d: vec![64] },
+        hidden: HiddenLayers {
+            encoder3d: vec![48],
+            head: vec![48],
+            encoder2d: vec![64],
+        },
         latent_len: 16,
         basis,
         sampled_bodies: 192,
@@ -178,9 +185,18 @@ fn evaluation_measures_model_and_baseline_alike() {
 
 #[test]
 fn a_configuration_that_contradicts_itself_is_refused() {
-    let empty = TrainConfig { batch_size: 0, ..config() };
-    assert!(matches!(run(&empty, None, false, &Quiet), Err(TrainError::Config(_))));
+    let empty = TrainConfig {
+        batch_size: 0,
+        ..config()
+    };
+    assert!(matches!(
+        run(&empty, None, false, &Quiet),
+        Err(TrainError::Config(_))
+    ));
     let mut still = config();
     still.stages[1].learning_rate = 0.0;
-    assert!(matches!(run(&still, None, false, &Quiet), Err(TrainError::Config(_))));
+    assert!(matches!(
+        run(&still, None, false, &Quiet),
+        Err(TrainError::Config(_))
+    ));
 }
