@@ -13,6 +13,9 @@ use crate::sketch_input::{SketchDrawing, screen_from_canvas};
 /// Space between the card's edge and its words, points.
 const MARGIN: f32 = 24.0;
 
+/// The part of the card that the words take, points.
+const HEADER_HEIGHT: f32 = 98.0;
+
 /// Turns canvas units into egui points.
 #[derive(Clone, Copy)]
 struct ToScreen(bevy::math::Rect);
@@ -69,7 +72,10 @@ fn paper(painter: &Painter, rect: Rect) {
     painter.add(theme::CARD_SHADOW.as_shape(rect, corners));
     painter.rect_filled(rect, corners, theme::PAPER);
     let spacing = 28.0;
-    let inner = rect.shrink(spacing * 0.5);
+    // The words stand on blank paper.
+    let inner = rect
+        .shrink(spacing * 0.5)
+        .with_min_y(rect.min.y + HEADER_HEIGHT);
     let (columns, rows) = (
         (inner.width() / spacing) as usize,
         (inner.height() / spacing) as usize,

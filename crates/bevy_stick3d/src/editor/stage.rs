@@ -11,9 +11,9 @@ use bevy::prelude::*;
 use bevy::render::render_resource::Face;
 
 const ZENITH: Srgba = Srgba::rgb(0.50, 0.66, 0.80);
-const HORIZON: Srgba = Srgba::rgb(0.90, 0.91, 0.90);
-const NADIR: Srgba = Srgba::rgb(0.78, 0.76, 0.72);
-const GROUND: Srgba = Srgba::rgb(0.80, 0.78, 0.74);
+const HORIZON: Srgba = Srgba::rgb(0.92, 0.92, 0.91);
+const NADIR: Srgba = Srgba::rgb(0.91, 0.90, 0.88);
+const GROUND: Srgba = Srgba::rgb(0.70, 0.69, 0.68);
 
 const SKY_RADIUS_M: f32 = 60.0;
 /// The ground is solid up to here, then fades.
@@ -57,7 +57,7 @@ pub(super) fn build(
         Name::new("key light"),
         DirectionalLight {
             color: Color::srgb(1.0, 0.96, 0.90),
-            illuminance: 7_500.0,
+            illuminance: 6_200.0,
             shadow_maps_enabled: true,
             shadow_depth_bias: 0.03,
             shadow_normal_bias: 1.2,
@@ -87,7 +87,7 @@ pub(super) fn build(
 /// The light that comes from everywhere: blue above, warm below.
 pub(super) fn ambient(images: &mut Assets<Image>) -> EnvironmentMapLight {
     EnvironmentMapLight {
-        intensity: 950.0,
+        intensity: 900.0,
         ..EnvironmentMapLight::hemispherical_gradient(
             images,
             Color::srgb(0.88, 0.94, 1.0),

@@ -242,9 +242,20 @@ impl SketchDrawing {
         if self.is_pen_unread()
             && let PenState::Drawing(stroke) = &self.pen
         {
+            let tip = stroke.points().last().map(|point| point.position_px);
             let mut strokes = self.ink.strokes.clone();
             strokes.push(stroke.clone());
-            self.live = Some(progress(&self.figure, &strokes, Pen::Down));
+            let mut live = progress(&self.figure, &strokes, Pen::Down);
+            // The joint under the pen is still on its way: guides that followed it would flutter.
+            for (live, settled) in live.placed.iter_mut().zip(&self.progress.placed) {
+                let at_tip = live
+                    .zip(tip)
+                    .is_some_and(|(a, b)| a.distance(b) < GRAB_RADIUS);
+                if settled.is_none() && at_tip {
+                    *live = None;
+                }
+            }
+            self.live = Some(live);
         }
     }
 
