@@ -53,14 +53,14 @@ pub enum EditorError {
     Screenshot(#[from] ScreenshotError),
     /// There is no screen to open a window on.
     #[error(
-        "there is no display to open a window on; start the editor from a desktop session, or use --screenshot, which needs none ({0})"
+        "there is no display to open a window on; start the editor from a desktop session, or use --screenshot, which needs none"
     )]
-    NoDisplay(String),
+    NoDisplay,
     /// There is no graphics adapter, not even one in software.
     #[error(
-        "no usable graphics adapter was found; install a Vulkan driver (Mesa's software one will do) ({0})"
+        "no usable graphics adapter was found; install a Vulkan driver (Mesa's software one will do)"
     )]
-    NoGpu(String),
+    NoGpu,
     /// The app ended of itself with this code.
     #[error("the editor ended early with code {0}; the log above says why")]
     Ended(u8),
@@ -74,8 +74,8 @@ impl EditorError {
     /// graphics adapter. (2 is what command line parsers end with.)
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::NoDisplay(_) => 3,
-            Self::NoGpu(_) => 4,
+            Self::NoDisplay => 3,
+            Self::NoGpu => 4,
             Self::Sketch(_) | Self::Screenshot(_) | Self::Ended(_) | Self::Start(_) => 1,
         }
     }
@@ -164,7 +164,7 @@ fn add_no_window(app: &mut App) {
 
 fn log() -> LogPlugin {
     LogPlugin {
-        filter: "warn,bevy_stick3d=info,wgpu=error,naga=error,bevy_render=error,bevy_winit=error,bevy_egui=error"
+        filter: "warn,bevy_stick3d=info,wgpu=error,wgpu_hal=off,naga=error,bevy_render=error,bevy_winit=error,bevy_egui=error"
             .to_owned(),
         ..default()
     }
@@ -192,16 +192,15 @@ fn quietly(build: impl FnOnce() -> App) -> Result<App, EditorError> {
 
 /// What a panic during the set-up means.
 fn start_error(message: &str) -> EditorError {
-    let first_line = message.lines().next().unwrap_or_default().to_owned();
     if message.contains("event loop") {
-        EditorError::NoDisplay(first_line)
+        EditorError::NoDisplay
     } else if message.contains("GPU")
         || message.contains("adapter")
         || message.contains("RequestDevice")
     {
-        EditorError::NoGpu(first_line)
+        EditorError::NoGpu
     } else {
-        EditorError::Start(first_line)
+        EditorError::Start(message.lines().next().unwrap_or_default().to_owned())
     }
 }
 

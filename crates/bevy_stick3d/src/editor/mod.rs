@@ -212,14 +212,19 @@ fn editor_ui(
     );
 
     place_canvas(&mut canvas, layout.canvas);
+    // First what the user asks, then the painting, so that both sides of the window show the same.
+    let asked = panels::toolbar(&mut ui, layout.toolbar, &drawing, &mut editor.file);
+    if let Some(action) = asked.or_else(|| panels::shortcut(ctx)) {
+        act(action, &mut editor, &mut drawing);
+    }
     let words = words::next_step(&drawing);
     canvas::paint(ui.painter(), layout.canvas, &drawing, &words, clock.pulse());
     show_cursor(ctx, layout.canvas, &drawing);
+    let status = standing_problem(&models, &figures, &editor.status);
+    panels::status_text(&ui, layout.canvas, &status);
     if editor.is_drop_hovering {
         panels::drop_hint(&ui, layout.canvas);
     }
-    let status = standing_problem(&models, &figures, &editor.status);
-    let asked = panels::toolbar(&mut ui, layout.toolbar, &drawing, &mut editor.file, &status);
     let note = drawing
         .joints()
         .iter()
@@ -227,9 +232,6 @@ fn editor_ui(
         .then_some("The body appears here");
     let input = panels::view(&mut ui, layout.view, view.texture, note);
     turn_view(&mut view, layout.view, input, ctx.pixels_per_point());
-    if let Some(action) = asked.or_else(|| panels::shortcut(ctx)) {
-        act(action, &mut editor, &mut drawing);
-    }
     Ok(())
 }
 

@@ -53,7 +53,6 @@ pub(super) fn toolbar(
     rect: Rect,
     drawing: &SketchDrawing,
     file: &mut String,
-    status: &StatusLine,
 ) -> Option<Action> {
     let mut action = None;
     let mut button = |ui: &mut Ui, words: &str, keys: &str, enabled: bool, meaning: Action| {
@@ -103,12 +102,11 @@ pub(super) fn toolbar(
             });
         },
     );
-    status_text(ui, rect, status);
     action
 }
 
-/// One quiet line just above the tools, inside the canvas' lower edge.
-fn status_text(ui: &Ui, toolbar: Rect, status: &StatusLine) {
+/// One quiet line inside the canvas' lower edge.
+pub(super) fn status_text(ui: &Ui, canvas: Rect, status: &StatusLine) {
     let Some((text, is_problem)) = status.shown() else {
         return;
     };
@@ -117,11 +115,11 @@ fn status_text(ui: &Ui, toolbar: Rect, status: &StatusLine) {
     } else {
         theme::INK_SOFT
     };
-    let room = toolbar.width() - 48.0;
+    let room = canvas.width() - 48.0;
     let galley = ui
         .painter()
         .layout(text.to_owned(), theme::small(), color, room.max(40.0));
-    let at = toolbar.left_top() + vec2(24.0, -18.0 - galley.size().y);
+    let at = canvas.left_bottom() + vec2(24.0, -18.0 - galley.size().y);
     ui.painter().galley(at, galley, color);
 }
 
