@@ -24,7 +24,9 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Poses a body after a sketch
-    #[command(after_help = "Example:\n  stick3d pose --sketch assets/sketches/walk.json --out walk.glb")]
+    #[command(
+        after_help = "Example:\n  stick3d pose --sketch assets/sketches/walk.json --out walk.glb"
+    )]
     Pose(PoseArguments),
     /// Trains a model from a rig and a pose library
     #[command(
@@ -66,7 +68,11 @@ pub(crate) struct BodyFiles {
     #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.glb")]
     pub(crate) rig: PathBuf,
     /// The rig's degrees of freedom and their limits
-    #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.controls.ron")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "assets/rigs/human.controls.ron"
+    )]
     pub(crate) controls: PathBuf,
     /// The pose library
     #[arg(long, value_name = "FILE", default_value = "assets/poses/human.ron")]
@@ -128,7 +134,11 @@ pub(crate) enum BakeCommand {
         #[command(flatten)]
         body: BodyFiles,
         /// Where to write the picture
-        #[arg(long, value_name = "FILE.png", default_value = "assets/poses/human.png")]
+        #[arg(
+            long,
+            value_name = "FILE.png",
+            default_value = "assets/poses/human.png"
+        )]
         out: PathBuf,
     },
 }

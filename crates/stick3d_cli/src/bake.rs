@@ -16,9 +16,9 @@ use crate::failure::{Failure, Outcome};
 /// Cameras of the contact sheet: from the front and half from the side, degrees.
 const SHEET_VIEWS_DEG: [f32; 2] = [20.0, 80.0];
 /// Edge of one picture of the contact sheet, pixels.
-const SHEET_PICTURE_PX: u32 = 160;
+const SHEET_PICTURE_PX: u32 = 120;
 /// Poses in a row of the contact sheet.
-const SHEET_COLUMNS: u32 = 6;
+const SHEET_COLUMNS: u32 = 7;
 
 /// Runs `stick3d bake`.
 pub(crate) fn run(command: &BakeCommand) -> Outcome {

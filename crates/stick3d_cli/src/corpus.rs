@@ -22,7 +22,11 @@ pub(crate) struct Corpus {
 impl Corpus {
     /// Reads the three files.
     pub(crate) fn read(files: &BodyFiles) -> Outcome<Self> {
-        let BodyFiles { rig: rig_path, controls: controls_path, poses: poses_path } = files;
+        let BodyFiles {
+            rig: rig_path,
+            controls: controls_path,
+            poses: poses_path,
+        } = files;
         let named = |path: &std::path::Path| format!("cannot use {}", path.display());
         let rig = Rig::from_glb(&inputs::bytes(rig_path)?)
             .map_err(|error| Failure::input(error).context(named(rig_path)))?;
@@ -30,7 +34,11 @@ impl Corpus {
             .map_err(|error| Failure::input(error).context(named(controls_path)))?;
         let library = PoseLibrary::from_ron(&inputs::text(poses_path)?, &controls)
             .map_err(|error| Failure::input(error).context(named(poses_path)))?;
-        Ok(Self { rig, controls, library })
+        Ok(Self {
+            rig,
+            controls,
+            library,
+        })
     }
 
     /// The library in two: what is trained on, and a tenth that is not.
@@ -47,26 +55,38 @@ impl Corpus {
             .iter()
             .cloned()
             .partition(|pose| held_out.contains(&pose.name));
-        (PoseLibrary { poses: trained }, PoseLibrary { poses: unseen })
+        (
+            PoseLibrary { poses: trained },
+            PoseLibrary { poses: unseen },
+        )
     }
 
     /// The poses of a library.
     pub(crate) fn poses(&self, library: &PoseLibrary) -> Vec<Pose> {
-        library.poses.iter().map(|pose| self.controls.pose(&pose.values)).collect()
+        library
+            .poses
+            .iter()
+            .map(|pose| self.controls.pose(&pose.values))
+            .collect()
     }
 
     /// The poses of a library and their mirror images.
     pub(crate) fn poses_both_ways(&self, library: &PoseLibrary) -> Vec<Pose> {
         let mut poses = self.poses(library);
-        poses.extend(library.poses.iter().map(|pose| {
-            self.controls.pose(&self.controls.mirror(&pose.values))
-        }));
+        poses.extend(
+            library
+                .poses
+                .iter()
+                .map(|pose| self.controls.pose(&self.controls.mirror(&pose.values))),
+        );
         poses
     }
 
     /// Endless sampled poses around those of `library`; one seed, one stream.
     pub(crate) fn stream<'a>(&'a self, library: &PoseLibrary, seed: u64) -> PoseStream<'a> {
         let mut sampler = PoseSampler::new(&self.rig, &self.controls, library, seed);
-        Box::new(std::iter::repeat_with(move || sampler.sample(SampleKind::Mixed)))
+        Box::new(std::iter::repeat_with(move || {
+            sampler.sample(SampleKind::Mixed)
+        }))
     }
 }

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use stick3d_model::Model;
 use stick3d_train::evaluate::{self, Drawn, EvalConfig, EvalInput, Report};
+use stick3d_train::rig::Pose;
 use stick3d_train::training::Progress;
 
 use crate::args::EvalArguments;
@@ -42,8 +43,7 @@ pub(crate) fn measure(
     progress: &dyn Progress,
 ) -> Outcome<Report> {
     let (trained_on, held_out) = corpus.split_of(model);
-    let mut baseline = corpus.poses(&trained_on);
-    baseline.truncate(BASELINE_POSES);
+    let baseline = spread(corpus.poses(&trained_on), BASELINE_POSES);
     let input = EvalInput {
         rig: &corpus.rig,
         library: &baseline,
@@ -51,6 +51,18 @@ pub(crate) fn measure(
         stream: corpus.stream(&trained_on, TEST_STREAM),
     };
     evaluate::evaluate(model, input, config, progress).map_err(Failure::model)
+}
+
+/// At most `count` of the poses, evenly spread over the library, which is ordered by subject.
+fn spread(poses: Vec<Pose>, count: usize) -> Vec<Pose> {
+    let len = poses.len();
+    let picked = |i: &usize| len <= count || (i * count) % len < count;
+    poses
+        .into_iter()
+        .enumerate()
+        .filter(|(i, _)| picked(i))
+        .map(|(_, pose)| pose)
+        .collect()
 }
 
 /// The report for people.
@@ -70,7 +82,10 @@ pub(crate) fn table(report: &Report) -> String {
         "2D cm",
         "bones %",
     );
-    for (label, rows) in [("model", &report.model), ("nearest neighbour", &report.baseline)] {
+    for (label, rows) in [
+        ("model", &report.model),
+        ("nearest neighbour", &report.baseline),
+    ] {
         // Writing into a String cannot fail.
         let _ = writeln!(text, "{label}");
         rows.iter().for_each(|row| write_row(&mut text, row));

@@ -16,22 +16,34 @@ pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 impl Failure {
     /// A sketch, rig, pose or figure file is wrong.
     pub(crate) fn input(error: impl Into<anyhow::Error>) -> Self {
-        Self { code: 3, error: error.into() }
+        Self {
+            code: 3,
+            error: error.into(),
+        }
     }
 
     /// A model file is wrong.
     pub(crate) fn model(error: impl Into<anyhow::Error>) -> Self {
-        Self { code: 4, error: error.into() }
+        Self {
+            code: 4,
+            error: error.into(),
+        }
     }
 
     /// An output could not be written.
     pub(crate) fn output(error: impl Into<anyhow::Error>) -> Self {
-        Self { code: 5, error: error.into() }
+        Self {
+            code: 5,
+            error: error.into(),
+        }
     }
 
     /// Puts what was being done before the message.
     pub(crate) fn context(self, what: impl Display + Send + Sync + 'static) -> Self {
-        Self { error: self.error.context(what), ..self }
+        Self {
+            error: self.error.context(what),
+            ..self
+        }
     }
 
     /// One line: the whole chain, from what was being done to why it failed.

@@ -1,5 +1,9 @@
 //! The `stick3d` command: poses a body after a sketch; bakes, trains and measures what it needs for that.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command talks to its terminal")]
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a command talks to its terminal"
+)]
 
 mod args;
 mod bake;

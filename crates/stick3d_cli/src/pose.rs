@@ -66,21 +66,31 @@ impl Body {
             decode_s: 0.0,
         };
         let start = Instant::now();
-        inference.encode(sketch, &mut body.latent).map_err(Failure::input)?;
+        inference
+            .encode(sketch, &mut body.latent)
+            .map_err(Failure::input)?;
         body.encode_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
         inference
             .decode(&body.latent, &mut body.positions, &mut body.normals)
             .map_err(Failure::model)?;
         body.decode_s = start.elapsed().as_secs_f64();
-        inference.joints(&body.latent, &mut body.joints).map_err(Failure::model)?;
+        inference
+            .joints(&body.latent, &mut body.joints)
+            .map_err(Failure::model)?;
         body.stand_on_ground();
         Ok(body)
     }
 
     fn stand_on_ground(&mut self) {
-        let lowest = self.positions.iter().map(|p| p[1]).fold(f32::INFINITY, f32::min);
-        self.positions.iter_mut().for_each(|position| position[1] -= lowest);
+        let lowest = self
+            .positions
+            .iter()
+            .map(|p| p[1])
+            .fold(f32::INFINITY, f32::min);
+        self.positions
+            .iter_mut()
+            .for_each(|position| position[1] -= lowest);
         self.joints.iter_mut().for_each(|joint| joint.y -= lowest);
     }
 
@@ -107,7 +117,10 @@ enum Output<'a> {
 
 impl<'a> Output<'a> {
     fn of(path: &'a Path) -> Outcome<Self> {
-        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+        if path
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
+        {
             return Ok(Self::Picture(path));
         }
         MeshFormat::of_path(path).map_err(Failure::output)?;

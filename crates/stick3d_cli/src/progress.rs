@@ -38,8 +38,11 @@ impl Progress for Bar {
     }
 
     fn epoch(&self, record: &LossRecord) {
-        let terms: Vec<String> =
-            record.terms.iter().map(|(name, value)| format!("{name} {value:.4}")).collect();
+        let terms: Vec<String> = record
+            .terms
+            .iter()
+            .map(|(name, value)| format!("{name} {value:.4}"))
+            .collect();
         self.note(&format!(
             "{:12} {:3}/{}  loss {:.4}  {}",
             record.stage.label(),

@@ -21,8 +21,9 @@ const QUICK: usize = 10;
 pub(crate) fn run(arguments: &TrainArguments) -> Outcome {
     let start = Instant::now();
     let figure = match &arguments.figure {
-        Some(path) => Figure::from_ron(&inputs::text(path)?)
-            .map_err(|error| Failure::input(error).context(format!("cannot use {}", path.display())))?,
+        Some(path) => Figure::from_ron(&inputs::text(path)?).map_err(|error| {
+            Failure::input(error).context(format!("cannot use {}", path.display()))
+        })?,
         None => Figure::human().clone(),
     };
     let corpus = Corpus::read(&arguments.body)?;
@@ -34,37 +35,63 @@ pub(crate) fn run(arguments: &TrainArguments) -> Outcome {
         rig: &corpus.rig,
         library: &corpus.poses_both_ways(&trained_on),
         streams: &streams,
-        held_out_poses: held_out.poses.iter().map(|pose| pose.name.clone()).collect(),
+        held_out_poses: held_out
+            .poses
+            .iter()
+            .map(|pose| pose.name.clone())
+            .collect(),
     };
     std::fs::create_dir_all(&arguments.work_dir)
         .with_context(|| format!("cannot make the folder {}", arguments.work_dir.display()))
         .map_err(Failure::output)?;
     let bar = Bar::new();
-    let trained =
-        training::train(&input, &config, Some(&arguments.work_dir), !arguments.fresh, &bar)
-            .map_err(anyhow::Error::from)?;
+    let trained = training::train(
+        &input,
+        &config,
+        Some(&arguments.work_dir),
+        !arguments.fresh,
+        &bar,
+    )
+    .map_err(anyhow::Error::from)?;
     let model = as_stored(&trained.model)?;
     let report = eval::measure(&model, &corpus, &EvalConfig::default(), &bar)?;
     bar.clear();
-    with_metrics(model, &report)?.save(&arguments.out).map_err(Failure::output)?;
+    with_metrics(model, &report)?
+        .save(&arguments.out)
+        .map_err(Failure::output)?;
     println!("{}", eval::table(&report));
-    println!("{} in {:.0} s", arguments.out.display(), start.elapsed().as_secs_f64());
+    println!(
+        "{} in {:.0} s",
+        arguments.out.display(),
+        start.elapsed().as_secs_f64()
+    );
     Ok(())
 }
 
 /// The model as it comes back from its file, where numbers are rounded: what is measured is what ships.
 fn as_stored(model: &Model) -> Outcome<Model> {
-    model.to_bytes().and_then(|bytes| Model::from_bytes(&bytes)).map_err(Failure::model)
+    model
+        .to_bytes()
+        .and_then(|bytes| Model::from_bytes(&bytes))
+        .map_err(Failure::model)
 }
 
+/// The model with its measures beside what the trainer noted already.
 fn with_metrics(model: Model, report: &Report) -> Outcome<Model> {
     let mut parts = model.into_parts();
-    parts.metadata.metrics = serde_json::to_value(report).map_err(anyhow::Error::from)?;
+    let report = serde_json::to_value(report).map_err(anyhow::Error::from)?;
+    match parts.metadata.metrics.as_object_mut() {
+        Some(noted) => drop(noted.insert("evaluation".to_owned(), report)),
+        None => parts.metadata.metrics = report,
+    }
     Model::new(parts).map_err(Failure::model)
 }
 
 fn config(arguments: &TrainArguments) -> TrainConfig {
-    let mut config = TrainConfig { seed: arguments.seed, ..TrainConfig::human() };
+    let mut config = TrainConfig {
+        seed: arguments.seed,
+        ..TrainConfig::human()
+    };
     if arguments.quick {
         config.sampled_bodies /= QUICK;
         config.basis.poses /= QUICK;

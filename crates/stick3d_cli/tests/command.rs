@@ -21,7 +21,13 @@ fn stick3d() -> Command {
 }
 
 fn pose(sketch: &Path, more: &[&str]) -> Output {
-    stick3d().arg("pose").arg("--sketch").arg(sketch).args(more).output().unwrap()
+    stick3d()
+        .arg("pose")
+        .arg("--sketch")
+        .arg(sketch)
+        .args(more)
+        .output()
+        .unwrap()
 }
 
 fn pose_standard_input(text: &str) -> Output {
@@ -32,7 +38,12 @@ fn pose_standard_input(text: &str) -> Output {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+    child
+        .stdin
+        .take()
+        .unwrap()
+        .write_all(text.as_bytes())
+        .unwrap();
     child.wait_with_output().unwrap()
 }
 
@@ -41,7 +52,9 @@ fn error_of(output: &Output) -> String {
 }
 
 fn joint(json: &Value, name: &str) -> [f64; 3] {
-    let numbers = json["joints"][name].as_array().unwrap_or_else(|| panic!("no joint {name}"));
+    let numbers = json["joints"][name]
+        .as_array()
+        .unwrap_or_else(|| panic!("no joint {name}"));
     [0, 1, 2].map(|axis| numbers[axis].as_f64().unwrap())
 }
 
@@ -57,11 +70,20 @@ fn json_tells_joints_latent_and_times() {
     let [neck, abdomen] = ["neck", "abdomen"].map(|name| joint(&json, name));
     assert!(neck[1] > abdomen[1] + 0.3, "he stands upright");
     for hand in ["hand_r", "hand_l"] {
-        assert!(joint(&json, hand)[1] > neck[1] + 0.2, "{hand} is above the head");
+        assert!(
+            joint(&json, hand)[1] > neck[1] + 0.2,
+            "{hand} is above the head"
+        );
     }
-    assert!(joint(&json, "hand_r")[0] < joint(&json, "hand_l")[0], "his right is at the viewer's left");
+    assert!(
+        joint(&json, "hand_r")[0] < joint(&json, "hand_l")[0],
+        "his right is at the viewer's left"
+    );
     for foot in ["foot_r", "foot_l"] {
-        assert!((-0.01..0.25).contains(&joint(&json, foot)[1]), "{foot} is near the ground");
+        assert!(
+            (-0.01..0.25).contains(&joint(&json, foot)[1]),
+            "{foot} is near the ground"
+        );
     }
 }
 
@@ -75,14 +97,31 @@ fn every_format_is_written_whole() {
         assert!(output.stdout.is_empty(), "only --json prints");
     }
     let text = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
-    let starting = |text: &str, with: &str| text.lines().filter(|line| line.starts_with(with)).count();
+    let starting =
+        |text: &str, with: &str| text.lines().filter(|line| line.starts_with(with)).count();
     assert_eq!(starting(&text("out.obj"), "v "), HUMAN_VERTICES);
     assert!(text("out.ply").contains(&format!("element vertex {HUMAN_VERTICES}\n")));
-    assert!(text("out.off").lines().any(|line| line.starts_with(&format!("{HUMAN_VERTICES} 24996"))));
-    assert!(std::fs::read(folder.path().join("out.glb")).unwrap().starts_with(b"glTF"));
-    let picture = image::open(folder.path().join("out.png")).unwrap().to_rgb8();
+    assert!(
+        text("out.off")
+            .lines()
+            .any(|line| line.starts_with(&format!("{HUMAN_VERTICES} 24996")))
+    );
+    assert!(
+        std::fs::read(folder.path().join("out.glb"))
+            .unwrap()
+            .starts_with(b"glTF")
+    );
+    let picture = image::open(folder.path().join("out.png"))
+        .unwrap()
+        .to_rgb8();
     let corner = *picture.get_pixel(0, 0);
-    let covered = picture.pixels().filter(|pixel| pixel.0.iter().zip(corner.0).any(|(a, b)| a.abs_diff(b) > 60));
+    let covered = picture.pixels().filter(|pixel| {
+        pixel
+            .0
+            .iter()
+            .zip(corner.0)
+            .any(|(a, b)| a.abs_diff(b) > 60)
+    });
     assert!(covered.count() > 10_000, "the body is in the picture");
 }
 
@@ -109,9 +148,18 @@ fn wrong_sketches_end_with_3_and_say_why() {
     ];
     for (text, expected) in cases {
         let output = pose_standard_input(text);
-        assert_eq!(output.status.code(), Some(3), "{text}: {}", error_of(&output));
+        assert_eq!(
+            output.status.code(),
+            Some(3),
+            "{text}: {}",
+            error_of(&output)
+        );
         assert!(output.stdout.is_empty());
-        assert!(error_of(&output).contains(expected), "{text}: {}", error_of(&output));
+        assert!(
+            error_of(&output).contains(expected),
+            "{text}: {}",
+            error_of(&output)
+        );
     }
     let missing = pose(Path::new("no-such-file.json"), &["--json"]);
     assert_eq!(missing.status.code(), Some(3));
@@ -133,10 +181,25 @@ fn wrong_models_end_with_4() {
     ];
     for (name, bytes) in cases {
         let path = folder.path().join(name);
-        std::fs::File::create(&path).unwrap().write_all(bytes).unwrap();
-        let output = pose(&sketch("walk.json"), &["--json", "--model", path.to_str().unwrap()]);
-        assert_eq!(output.status.code(), Some(4), "{name}: {}", error_of(&output));
-        assert!(error_of(&output).contains(name), "{name}: {}", error_of(&output));
+        std::fs::File::create(&path)
+            .unwrap()
+            .write_all(bytes)
+            .unwrap();
+        let output = pose(
+            &sketch("walk.json"),
+            &["--json", "--model", path.to_str().unwrap()],
+        );
+        assert_eq!(
+            output.status.code(),
+            Some(4),
+            "{name}: {}",
+            error_of(&output)
+        );
+        assert!(
+            error_of(&output).contains(name),
+            "{name}: {}",
+            error_of(&output)
+        );
     }
 }
 
@@ -146,7 +209,12 @@ fn unwritable_outputs_end_with_5_and_leave_nothing() {
     let nowhere = folder.path().join("no-such-folder/out.glb");
     for path in [nowhere.to_str().unwrap(), "out.step"] {
         let output = pose(&sketch("walk.json"), &["--out", path]);
-        assert_eq!(output.status.code(), Some(5), "{path}: {}", error_of(&output));
+        assert_eq!(
+            output.status.code(),
+            Some(5),
+            "{path}: {}",
+            error_of(&output)
+        );
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
@@ -158,6 +226,9 @@ fn usage_errors_end_with_2_and_help_shows_an_example() {
     for command in ["pose", "train", "eval", "bake"] {
         let output = stick3d().args([command, "--help"]).output().unwrap();
         let help = String::from_utf8(output.stdout).unwrap();
-        assert!(help.contains("Example") && help.contains("stick3d"), "{command}: {help}");
+        assert!(
+            help.contains("Example") && help.contains("stick3d"),
+            "{command}: {help}"
+        );
     }
 }

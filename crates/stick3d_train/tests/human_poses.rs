@@ -23,12 +23,19 @@ static HUMAN: LazyLock<Human> = LazyLock::new(|| {
     let rig = Rig::from_glb(include_bytes!("../../../assets/rigs/human.glb")).unwrap();
     let controls = Controls::from_ron(HUMAN_CONTROLS, &rig).unwrap();
     let library = PoseLibrary::from_ron(HUMAN_POSES, &controls).unwrap();
-    Human { rig, controls, library }
+    Human {
+        rig,
+        controls,
+        library,
+    }
 });
 
 fn posed(values: &PoseValues) -> Vec<Vec3> {
     let mut positions = Vec::new();
-    HUMAN.rig.skin(&HUMAN.controls.pose_on_ground(values, &HUMAN.rig), &mut positions);
+    HUMAN.rig.skin(
+        &HUMAN.controls.pose_on_ground(values, &HUMAN.rig),
+        &mut positions,
+    );
     positions
 }
 
@@ -36,23 +43,38 @@ fn overlaps(values: &PoseValues, allowed_m: f32) -> Vec<String> {
     let pose = HUMAN.controls.pose(values);
     let transforms = HUMAN.rig.bone_transforms(&pose);
     let body = HUMAN.controls.body();
-    body.overlaps(&transforms, allowed_m).iter().map(|overlap| format!("{overlap:?}")).collect()
+    body.overlaps(&transforms, allowed_m)
+        .iter()
+        .map(|overlap| format!("{overlap:?}"))
+        .collect()
 }
 
 #[test]
 fn the_library_is_large_and_named() {
-    let names: Vec<&str> = HUMAN.library.poses.iter().map(|pose| pose.name.as_str()).collect();
+    let names: Vec<&str> = HUMAN
+        .library
+        .poses
+        .iter()
+        .map(|pose| pose.name.as_str())
+        .collect();
     assert!(names.len() >= 72, "{} poses", names.len());
     for phase in 1..=8 {
         for gait in ["walk", "run"] {
             let prefix = format!("{gait}_{phase}_");
-            assert!(names.iter().any(|name| name.starts_with(&prefix)), "no {prefix}*");
+            assert!(
+                names.iter().any(|name| name.starts_with(&prefix)),
+                "no {prefix}*"
+            );
         }
     }
-    for word in ["sit", "squat", "kneel", "lunge", "kick", "punch", "throw", "reach", "wave", "point",
-        "dance", "yoga", "climb", "crawl", "fall", "lie", "carry", "bow", "cheer", "think", "jump"]
-    {
-        assert!(names.iter().any(|name| name.contains(word)), "no pose of {word}");
+    for word in [
+        "sit", "squat", "kneel", "lunge", "kick", "punch", "throw", "reach", "wave", "point",
+        "dance", "yoga", "climb", "crawl", "fall", "lie", "carry", "bow", "cheer", "think", "jump",
+    ] {
+        assert!(
+            names.iter().any(|name| name.contains(word)),
+            "no pose of {word}"
+        );
     }
 }
 
@@ -61,16 +83,28 @@ fn every_pose_is_within_the_limits_and_meets_its_goals() {
     for pose in &HUMAN.library.poses {
         HUMAN.controls.check(&pose.values, &pose.name).unwrap();
         // In decimetres: what lies on the ground may hover a hand's breadth.
-        assert!(pose.miss < 0.9, "{} misses its goals by {}", pose.name, pose.miss);
+        assert!(
+            pose.miss < 0.9,
+            "{} misses its goals by {}",
+            pose.name,
+            pose.miss
+        );
     }
 }
 
 #[test]
 fn every_pose_stands_on_the_ground_or_at_its_height() {
     for pose in &HUMAN.library.poses {
-        let lowest = posed(&pose.values).iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+        let lowest = posed(&pose.values)
+            .iter()
+            .map(|p| p.y)
+            .fold(f32::INFINITY, f32::min);
         let expected = pose.values.lift_m;
-        assert!((lowest - expected).abs() < 1e-3, "{}: {lowest} m, not {expected} m", pose.name);
+        assert!(
+            (lowest - expected).abs() < 1e-3,
+            "{}: {lowest} m, not {expected} m",
+            pose.name
+        );
     }
 }
 
@@ -98,16 +132,22 @@ fn a_mirrored_pose_is_the_mirror_image() {
             assert!((a - b).abs() < 1e-4, "{}", pose.name);
         }
         let bounds = |positions: &[Vec3]| {
-            positions.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| {
-                (low.min(*p), high.max(*p))
-            })
+            positions
+                .iter()
+                .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| {
+                    (low.min(*p), high.max(*p))
+                })
         };
         let (low, high) = bounds(&posed(&pose.values));
         let (mirrored_low, mirrored_high) = bounds(&posed(&mirrored));
         let expected_low = Vec3::new(-high.x, low.y, low.z);
         let expected_high = Vec3::new(-low.x, high.y, high.z);
         assert!(mirrored_low.distance(expected_low) < 0.02, "{}", pose.name);
-        assert!(mirrored_high.distance(expected_high) < 0.02, "{}", pose.name);
+        assert!(
+            mirrored_high.distance(expected_high) < 0.02,
+            "{}",
+            pose.name
+        );
     }
 }
 
@@ -115,7 +155,9 @@ fn a_mirrored_pose_is_the_mirror_image() {
 fn the_same_seed_draws_the_same_poses() {
     let draw = |seed| {
         let mut sampler = PoseSampler::new(&HUMAN.rig, &HUMAN.controls, &HUMAN.library, seed);
-        (0..20).map(|_| sampler.sample_values(SampleKind::Mixed)).collect::<Vec<_>>()
+        (0..20)
+            .map(|_| sampler.sample_values(SampleKind::Mixed))
+            .collect::<Vec<_>>()
     };
     assert_eq!(draw(3), draw(3));
     assert_ne!(draw(3), draw(4));
@@ -136,10 +178,21 @@ fn sampled_poses_keep_limits_and_do_not_run_into_themselves() {
 #[test]
 fn a_split_keeps_mirror_images_together_and_loses_nothing() {
     let (train, held_out) = HUMAN.library.split(1, 0.1);
-    assert_eq!(train.poses.len() + held_out.poses.len(), HUMAN.library.poses.len());
-    assert!((10..=15).contains(&held_out.poses.len()), "{} held out", held_out.poses.len());
+    assert_eq!(
+        train.poses.len() + held_out.poses.len(),
+        HUMAN.library.poses.len()
+    );
+    assert!(
+        (10..=15).contains(&held_out.poses.len()),
+        "{} held out",
+        held_out.poses.len()
+    );
     for pose in &held_out.poses {
-        assert!(train.poses.iter().all(|other| other.family != pose.family), "{}", pose.name);
+        assert!(
+            train.poses.iter().all(|other| other.family != pose.family),
+            "{}",
+            pose.name
+        );
     }
 }
 
@@ -147,12 +200,21 @@ fn a_split_keeps_mirror_images_together_and_loses_nothing() {
 fn a_misspelt_control_is_named_with_the_nearest_valid_one() {
     let text = r#"(rig: "human", poses: [(name: "odd", values: {"knee_r.flexoin": 10})])"#;
     let error = PoseLibrary::from_ron(text, &HUMAN.controls).unwrap_err();
-    assert!(matches!(error, PoseError::UnknownControl { .. }), "{error:?}");
+    assert!(
+        matches!(error, PoseError::UnknownControl { .. }),
+        "{error:?}"
+    );
     let message = error.to_string();
-    assert!(message.contains("knee_r.flexoin") && message.contains("knee_r.flexion"), "{message}");
+    assert!(
+        message.contains("knee_r.flexoin") && message.contains("knee_r.flexion"),
+        "{message}"
+    );
     let text = r#"(rig: "human", poses: [(name: "odd", values: {"knee_r.flexion": 170})])"#;
     let error = PoseLibrary::from_ron(text, &HUMAN.controls).unwrap_err();
-    assert!(matches!(error, PoseError::OutsideLimits { .. }), "{error:?}");
+    assert!(
+        matches!(error, PoseError::OutsideLimits { .. }),
+        "{error:?}"
+    );
 }
 
 proptest! {

@@ -28,14 +28,24 @@ pub(super) fn neutral_rotations(
     // A bone that is not mentioned goes along with its parent, so that parents come first.
     let mut whole: Vec<Quat> = Vec::with_capacity(own.len());
     for (bone, rotation) in own.into_iter().enumerate() {
-        let parent = skeleton.bones[bone].parent.map_or(Quat::IDENTITY, |parent| whole[parent]);
+        let parent = skeleton.bones[bone]
+            .parent
+            .map_or(Quat::IDENTITY, |parent| whole[parent]);
         whole.push(rotation.unwrap_or(parent));
     }
     Ok(whole)
 }
 
 fn aim(skeleton: &Skeleton, bone: usize, stance: &Stance, half: Half) -> Result<Quat, PoseError> {
-    let Stance::Aim { toward, points, side, becomes } = stance else { return Ok(Quat::IDENTITY) };
+    let Stance::Aim {
+        toward,
+        points,
+        side,
+        becomes,
+    } = stance
+    else {
+        return Ok(Quat::IDENTITY);
+    };
     let head = |name: &String| -> Result<Vec3, PoseError> {
         Ok(skeleton.bones[skeleton.bone_index(&half.name(name))?].head)
     };
@@ -43,9 +53,10 @@ fn aim(skeleton: &Skeleton, bone: usize, stance: &Stance, half: Half) -> Result<
     // Only an axis of rotation changes its hand under reflection; a plain direction does not.
     let (side, becomes) = match side {
         SideOf::Between(from, to) => (head(to)? - head(from)?, half.direction(*becomes)),
-        SideOf::Bend(a, b, c) => {
-            ((head(b)? - head(a)?).cross(head(c)? - head(b)?), half.axis(*becomes))
-        }
+        SideOf::Bend(a, b, c) => (
+            (head(b)? - head(a)?).cross(head(c)? - head(b)?),
+            half.axis(*becomes),
+        ),
         SideOf::Axis(axis) => (half.axis(*axis), half.axis(*becomes)),
     };
     let frame = |what, line, side| {
@@ -66,6 +77,10 @@ fn aim(skeleton: &Skeleton, bone: usize, stance: &Stance, half: Half) -> Result<
 fn frame(line: Vec3, side: Vec3) -> Option<Mat3> {
     let x = line.try_normalize()?;
     let y = side.try_normalize()?.reject_from_normalized(x);
-    let y = if y.length() > 1e-3 { y.normalize() } else { return None };
+    let y = if y.length() > 1e-3 {
+        y.normalize()
+    } else {
+        return None;
+    };
     Some(Mat3::from_cols(x, y, x.cross(y)))
 }

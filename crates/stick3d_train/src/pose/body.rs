@@ -59,11 +59,17 @@ impl Body {
                 parts.push(fit_part(rig, part, half)?);
             }
         }
-        let mut body = Self { tested: Vec::new(), parts };
+        let mut body = Self {
+            tested: Vec::new(),
+            parts,
+        };
         let mut exempt = BTreeSet::new();
         for (first, second) in &spec.may_overlap {
             for &half in Half::of(&format!("{first}{second}")) {
-                let pair = (body.index(&half.name(first))?, body.index(&half.name(second))?);
+                let pair = (
+                    body.index(&half.name(first))?,
+                    body.index(&half.name(second))?,
+                );
                 exempt.insert((pair.0.min(pair.1), pair.0.max(pair.1)));
             }
         }
@@ -88,16 +94,24 @@ impl Body {
     /// # Errors
     /// [`PoseError::Inconsistent`] with the nearest valid name.
     pub fn index(&self, name: &str) -> Result<usize, PoseError> {
-        self.parts.iter().position(|part| part.name == name).ok_or_else(|| {
-            let names = self.parts.iter().map(|part| part.name.as_str());
-            let why = format!("there is no part `{name}` of the body; {}", hint(name, names));
-            PoseError::inconsistent("parts", why)
-        })
+        self.parts
+            .iter()
+            .position(|part| part.name == name)
+            .ok_or_else(|| {
+                let names = self.parts.iter().map(|part| part.name.as_str());
+                let why = format!(
+                    "there is no part `{name}` of the body; {}",
+                    hint(name, names)
+                );
+                PoseError::inconsistent("parts", why)
+            })
     }
 
     /// The height of the lowest point of all parts, metres.
     pub fn lowest_m(&self, transforms: &[(Quat, Vec3)]) -> f32 {
-        (0..self.parts.len()).map(|i| self.lowest_of_m(i, transforms)).fold(f32::INFINITY, f32::min)
+        (0..self.parts.len())
+            .map(|i| self.lowest_of_m(i, transforms))
+            .fold(f32::INFINITY, f32::min)
     }
 
     /// The height of the lowest point of one part, metres.
@@ -105,7 +119,11 @@ impl Body {
         let part = &self.parts[part];
         let (rotation, head) = transforms[part.bone];
         let up = rotation.inverse() * Vec3::Y;
-        part.hull.iter().map(|p| up.dot(*p)).fold(f32::INFINITY, f32::min) + head.y
+        part.hull
+            .iter()
+            .map(|p| up.dot(*p))
+            .fold(f32::INFINITY, f32::min)
+            + head.y
     }
 
     /// The middle of a part, model space, metres.
@@ -132,14 +150,19 @@ impl Body {
 
     /// All pairs of parts that run deeper than `allowed_m` into each other, where they should not.
     pub fn overlaps(&self, transforms: &[(Quat, Vec3)], allowed_m: f32) -> Vec<Overlap> {
-        let segments: Vec<[Vec3; 2]> =
-            (0..self.parts.len()).map(|part| self.segment(part, transforms)).collect();
+        let segments: Vec<[Vec3; 2]> = (0..self.parts.len())
+            .map(|part| self.segment(part, transforms))
+            .collect();
         let mut overlaps = Vec::new();
         for &(first, second) in &self.tested {
             let reach = self.parts[first].radius_m + self.parts[second].radius_m;
             let depth_m = reach - segment_distance(segments[first], segments[second]);
             if depth_m > allowed_m {
-                overlaps.push(Overlap { first, second, depth_m });
+                overlaps.push(Overlap {
+                    first,
+                    second,
+                    depth_m,
+                });
             }
         }
         overlaps
@@ -170,7 +193,10 @@ fn fit_part(rig: &Rig, spec: &PartSpec, half: Half) -> Result<Part, PoseError> {
     }
     let head = rig.skeleton.bones[bone].head;
     let followed = |list: &[(u16, f32)]| -> f32 {
-        list.iter().filter(|(b, _)| bones.contains(&usize::from(*b))).map(|(_, w)| w).sum()
+        list.iter()
+            .filter(|(b, _)| bones.contains(&usize::from(*b)))
+            .map(|(_, w)| w)
+            .sum()
     };
     let points: Vec<Vec3> = rig
         .influences
@@ -181,13 +207,23 @@ fn fit_part(rig: &Rig, spec: &PartSpec, half: Half) -> Result<Part, PoseError> {
         .collect();
     let name = half.name(&spec.name);
     if points.len() < 8 {
-        let why = format!("only {} vertices follow its bones; at least 8 must", points.len());
+        let why = format!(
+            "only {} vertices follow its bones; at least 8 must",
+            points.len()
+        );
         return Err(PoseError::inconsistent(format!("part `{name}`"), why));
     }
     let (segment, radius_m) = fit_capsule(&points, spec.slim);
     let length = segment[0].distance(segment[1]);
     let volume_m3 = std::f32::consts::PI * radius_m * radius_m * (length + radius_m * 4.0 / 3.0);
-    Ok(Part { name, bone, segment, radius_m, hull: hull(&points), volume_m3 })
+    Ok(Part {
+        name,
+        bone,
+        segment,
+        radius_m,
+        hull: hull(&points),
+        volume_m3,
+    })
 }
 
 /// The capsule along the points' longest direction: it holds most of them, but not their bumps.
@@ -207,11 +243,18 @@ fn fit_capsule(points: &[Vec3], slim: f32) -> ([Vec3; 2], f32) {
         values[((values.len() - 1) as f32 * q) as usize]
     };
     let along: Vec<f32> = points.iter().map(|p| (*p - mean).dot(axis)).collect();
-    let across = points.iter().map(|p| (*p - mean).reject_from_normalized(axis).length()).collect();
+    let across = points
+        .iter()
+        .map(|p| (*p - mean).reject_from_normalized(axis).length())
+        .collect();
     let radius = quantile(across, 0.6) * slim;
     let from = quantile(along.clone(), 0.02) + radius;
     let to = quantile(along, 0.98) - radius;
-    let (from, to) = if from < to { (from, to) } else { ((from + to) / 2.0, (from + to) / 2.0) };
+    let (from, to) = if from < to {
+        (from, to)
+    } else {
+        ((from + to) / 2.0, (from + to) / 2.0)
+    };
     ([mean + axis * from, mean + axis * to], radius)
 }
 
@@ -224,8 +267,11 @@ fn hull(points: &[Vec3]) -> Vec<Vec3> {
             let (sin, cos) = (golden * i as f32).sin_cos();
             let r = (1.0 - y * y).sqrt();
             let direction = Vec3::new(r * cos, y, r * sin);
-            (0..points.len())
-                .max_by(|&a, &b| points[a].dot(direction).total_cmp(&points[b].dot(direction)))
+            (0..points.len()).max_by(|&a, &b| {
+                points[a]
+                    .dot(direction)
+                    .total_cmp(&points[b].dot(direction))
+            })
         })
         .collect();
     outermost.into_iter().map(|i| points[i]).collect()
@@ -237,7 +283,11 @@ fn segment_distance([p1, q1]: [Vec3; 2], [p2, q2]: [Vec3; 2]) -> f32 {
     let (a, e, f) = (d1.dot(d1).max(1e-12), d2.dot(d2).max(1e-12), d2.dot(r));
     let (b, c) = (d1.dot(d2), d1.dot(r));
     let denominator = a * e - b * b;
-    let mut s = if denominator > 1e-9 { ((b * f - c * e) / denominator).clamp(0.0, 1.0) } else { 0.5 };
+    let mut s = if denominator > 1e-9 {
+        ((b * f - c * e) / denominator).clamp(0.0, 1.0)
+    } else {
+        0.5
+    };
     let t = ((b * s + f) / e).clamp(0.0, 1.0);
     s = ((b * t - c) / a).clamp(0.0, 1.0);
     (p1 + d1 * s).distance(p2 + d2 * t)

@@ -107,16 +107,26 @@ impl Controls {
     fn add_turns(&mut self, spec: &ControlsSpec) -> Result<(), PoseError> {
         for control in &spec.controls {
             for &half in Half::of(&control.name) {
-                let spread = control.spread.unwrap_or((control.limits.1 - control.limits.0) / 5.0);
-                let index =
-                    self.add(half.name(&control.name), control.limits, control.ease, spread)?;
+                let spread = control
+                    .spread
+                    .unwrap_or((control.limits.1 - control.limits.0) / 5.0);
+                let index = self.add(
+                    half.name(&control.name),
+                    control.limits,
+                    control.ease,
+                    spread,
+                )?;
                 self.list[index].odd = control.odd;
                 for drive in &control.drives {
                     let bone = self.skeleton.bone_index(&half.name(&drive.bone))?;
                     let axis = half.axis(drive.axis).try_normalize().ok_or_else(|| {
                         PoseError::inconsistent(control.name.clone(), "an axis has no length")
                     })?;
-                    self.turns[bone].push(Turn { control: index, axis, share: drive.share });
+                    self.turns[bone].push(Turn {
+                        control: index,
+                        axis,
+                        share: drive.share,
+                    });
                 }
             }
         }
@@ -159,10 +169,21 @@ impl Controls {
             return Err(PoseError::inconsistent(name, why));
         }
         if self.by_name.insert(name.clone(), index).is_some() {
-            return Err(PoseError::inconsistent(name, "this control is defined twice"));
+            return Err(PoseError::inconsistent(
+                name,
+                "this control is defined twice",
+            ));
         }
         let mirror = index;
-        self.list.push(Control { name, min_deg, max_deg, ease_deg, spread_deg, mirror, odd: false });
+        self.list.push(Control {
+            name,
+            min_deg,
+            max_deg,
+            ease_deg,
+            spread_deg,
+            mirror,
+            odd: false,
+        });
         Ok(index)
     }
 
@@ -189,11 +210,14 @@ impl Controls {
     /// # Errors
     /// [`PoseError::UnknownControl`] with the nearest valid name.
     pub fn index(&self, name: &str, place: &str) -> Result<usize, PoseError> {
-        self.by_name.get(name).copied().ok_or_else(|| PoseError::UnknownControl {
-            place: place.to_owned(),
-            name: name.to_owned(),
-            hint: hint(name, self.by_name.keys().map(String::as_str)),
-        })
+        self.by_name
+            .get(name)
+            .copied()
+            .ok_or_else(|| PoseError::UnknownControl {
+                place: place.to_owned(),
+                name: name.to_owned(),
+                hint: hint(name, self.by_name.keys().map(String::as_str)),
+            })
     }
 
     /// The indices that a name in a pose stands for: `elbow.flexion` means both elbows, `hip_r` all
@@ -202,19 +226,33 @@ impl Controls {
     /// # Errors
     /// [`PoseError::UnknownControl`] with the nearest valid name.
     pub fn indices(&self, name: &str, place: &str) -> Result<Vec<usize>, PoseError> {
-        let (stem, kind) = name.split_once('.').map_or((name, None), |(a, b)| (a, Some(b)));
+        let (stem, kind) = name
+            .split_once('.')
+            .map_or((name, None), |(a, b)| (a, Some(b)));
         let meant = |control: &Control| {
             let (own, own_kind) = control.name.split_once('.').unwrap_or((&control.name, ""));
-            let unsided = own.strip_suffix("_l").or_else(|| own.strip_suffix("_r")).unwrap_or(own);
+            let unsided = own
+                .strip_suffix("_l")
+                .or_else(|| own.strip_suffix("_r"))
+                .unwrap_or(own);
             (own == stem || unsided == stem) && kind.is_none_or(|kind| kind == own_kind)
         };
-        let found: Vec<usize> = (0..self.list.len()).filter(|&i| meant(&self.list[i])).collect();
-        if found.is_empty() { self.index(name, place).map(|index| vec![index]) } else { Ok(found) }
+        let found: Vec<usize> = (0..self.list.len())
+            .filter(|&i| meant(&self.list[i]))
+            .collect();
+        if found.is_empty() {
+            self.index(name, place).map(|index| vec![index])
+        } else {
+            Ok(found)
+        }
     }
 
     /// Everything at ease, on the ground.
     pub fn ease(&self) -> PoseValues {
-        PoseValues { degrees: self.list.iter().map(|c| c.ease_deg).collect(), lift_m: 0.0 }
+        PoseValues {
+            degrees: self.list.iter().map(|c| c.ease_deg).collect(),
+            lift_m: 0.0,
+        }
     }
 
     /// The limits of control `index`, degrees. The highest raise depends on the plane it is in.
@@ -222,7 +260,10 @@ impl Controls {
         let control = &self.list[index];
         let mut max = control.max_deg;
         if let Some(swing) = self.swings.iter().find(|swing| swing.plane + 1 == index) {
-            max = max.min(piecewise(&swing.spec.raise_max, values.degrees[swing.plane]));
+            max = max.min(piecewise(
+                &swing.spec.raise_max,
+                values.degrees[swing.plane],
+            ));
         }
         (control.min_deg, max)
     }
@@ -263,13 +304,19 @@ impl Controls {
             let value = values.degrees[control.mirror];
             if control.odd { -value } else { value }
         });
-        PoseValues { degrees: degrees.collect(), lift_m: values.lift_m }
+        PoseValues {
+            degrees: degrees.collect(),
+            lift_m: values.lift_m,
+        }
     }
 
     /// `sum of weight x pose` over the given poses, kept inside the limits.
     #[must_use]
     pub fn blend(&self, poses: &[(f32, &PoseValues)]) -> PoseValues {
-        let mut blended = PoseValues { degrees: vec![0.0; self.list.len()], lift_m: 0.0 };
+        let mut blended = PoseValues {
+            degrees: vec![0.0; self.list.len()],
+            lift_m: 0.0,
+        };
         for (weight, pose) in poses {
             blended.lift_m += weight * pose.lift_m;
             for (sum, degrees) in blended.degrees.iter_mut().zip(&pose.degrees) {

@@ -61,12 +61,20 @@ impl PoseError {
     /// Turns RON's report into ours.
     pub(crate) fn syntax(what: &'static str, error: &ron::error::SpannedError) -> Self {
         let at = error.span.start;
-        Self::Syntax { what, line: at.line, column: at.col, why: error.code.to_string() }
+        Self::Syntax {
+            what,
+            line: at.line,
+            column: at.col,
+            why: error.code.to_string(),
+        }
     }
 
     /// A contradiction inside a file.
     pub(crate) fn inconsistent(place: impl Into<String>, why: impl Into<String>) -> Self {
-        Self::Inconsistent { place: place.into(), why: why.into() }
+        Self::Inconsistent {
+            place: place.into(),
+            why: why.into(),
+        }
     }
 }
 

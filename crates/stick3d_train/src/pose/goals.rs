@@ -56,8 +56,16 @@ pub enum Goal {
 enum Bound {
     Level(usize),
     Ground(Vec<usize>),
-    Reach { part: usize, bone: usize, at: Vec3 },
-    Face { part: usize, axis: Vec3, toward: Vec3 },
+    Reach {
+        part: usize,
+        bone: usize,
+        at: Vec3,
+    },
+    Face {
+        part: usize,
+        axis: Vec3,
+        toward: Vec3,
+    },
     Balance(Vec<usize>),
 }
 
@@ -68,7 +76,11 @@ impl Goal {
             let halves = |name: &String| -> Vec<String> {
                 Half::of(name).iter().map(|half| half.name(name)).collect()
             };
-            names.iter().flat_map(halves).map(|name| body.index(&name)).collect()
+            names
+                .iter()
+                .flat_map(halves)
+                .map(|name| body.index(&name))
+                .collect()
         };
         match self {
             Self::Ground(names) => into.push(Bound::Ground(all(names)?)),
@@ -78,14 +90,22 @@ impl Goal {
                 for &half in Half::of(part) {
                     let bone = controls.skeleton.bone_index(&half.name(of))?;
                     let part = body.index(&half.name(part))?;
-                    into.push(Bound::Reach { part, bone, at: half.direction(*at) });
+                    into.push(Bound::Reach {
+                        part,
+                        bone,
+                        at: half.direction(*at),
+                    });
                 }
             }
             Self::Face { part, axis, toward } => {
                 for &half in Half::of(part) {
                     let part = body.index(&half.name(part))?;
                     let (axis, toward) = (half.direction(*axis), half.direction(*toward));
-                    into.push(Bound::Face { part, axis, toward: toward.normalize_or_zero() });
+                    into.push(Bound::Face {
+                        part,
+                        axis,
+                        toward: toward.normalize_or_zero(),
+                    });
                 }
             }
         }
@@ -108,9 +128,11 @@ impl Bound {
             }
             Self::Ground(parts) => {
                 let lowest = body.lowest_m(transforms);
-                out.extend(parts.iter().map(|&part| {
-                    (body.lowest_of_m(part, transforms) - lowest) * PER_METRE
-                }));
+                out.extend(
+                    parts
+                        .iter()
+                        .map(|&part| (body.lowest_of_m(part, transforms) - lowest) * PER_METRE),
+                );
             }
             Self::Reach { part, bone, at } => {
                 let (rotation, head) = transforms[*bone];
@@ -168,7 +190,9 @@ pub(super) fn solve(
         for i in 0..free.len() {
             normal[(i, i)] += damping * (normal[(i, i)] + 1e-6);
         }
-        let Some(step) = normal.cholesky().map(|c| c.solve(&gradient)) else { break };
+        let Some(step) = normal.cholesky().map(|c| c.solve(&gradient)) else {
+            break;
+        };
         let mut moved = values.clone();
         for (i, &index) in free.iter().enumerate() {
             moved.degrees[index] -= step[i].clamp(-20.0, 20.0);

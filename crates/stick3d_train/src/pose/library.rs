@@ -85,7 +85,10 @@ impl PoseLibrary {
     fn read_pose(&self, spec: &PoseSpec, controls: &Controls) -> Result<NamedPose, PoseError> {
         let place = format!("pose `{}`", spec.name);
         if self.get(&spec.name).is_some() {
-            return Err(PoseError::inconsistent(place, "another pose has the same name"));
+            return Err(PoseError::inconsistent(
+                place,
+                "another pose has the same name",
+            ));
         }
         let mut values = controls.ease();
         let mut family = &spec.name;
@@ -104,8 +107,10 @@ impl PoseLibrary {
         }
         values.lift_m = spec.lift_m;
         // Both sides first, so that a single side can differ from them.
-        let (pairs, singles): (Vec<_>, Vec<_>) =
-            spec.values.iter().partition(|(name, _)| controls.index(name, &place).is_err());
+        let (pairs, singles): (Vec<_>, Vec<_>) = spec
+            .values
+            .iter()
+            .partition(|(name, _)| controls.index(name, &place).is_err());
         for (name, &degrees) in pairs.into_iter().chain(singles) {
             for index in controls.indices(name, &place)? {
                 values.degrees[index] = degrees;
@@ -121,7 +126,12 @@ impl PoseLibrary {
         } else {
             solve(controls, &mut values, &spec.goals, &free)?
         };
-        Ok(NamedPose { name: spec.name.clone(), values, family: family.clone(), miss })
+        Ok(NamedPose {
+            name: spec.name.clone(),
+            values,
+            family: family.clone(),
+            miss,
+        })
     }
 
     /// Writes the poses with plain angles, goals solved.
@@ -145,7 +155,10 @@ impl PoseLibrary {
             goals: Vec::new(),
             free: Vec::new(),
         });
-        let spec = LibrarySpec { rig: rig.to_owned(), poses: poses.collect() };
+        let spec = LibrarySpec {
+            rig: rig.to_owned(),
+            poses: poses.collect(),
+        };
         ron::ser::to_string_pretty(&spec, ron::ser::PrettyConfig::default())
             .map_err(|error| PoseError::inconsistent("writing poses", error.to_string()))
     }
@@ -167,7 +180,11 @@ impl PoseLibrary {
         let mut held_out = Vec::new();
         let mut count = 0;
         for family in families {
-            let size = self.poses.iter().filter(|pose| pose.family == family).count();
+            let size = self
+                .poses
+                .iter()
+                .filter(|pose| pose.family == family)
+                .count();
             if count + size <= wanted {
                 held_out.push(family);
                 count += size;

@@ -43,12 +43,19 @@ impl Controls {
             Quat::from_xyzw(q.x, -q.y, -q.z, q.w)
         });
         let t = pose.root_translation;
-        Pose { rotations: rotations.collect(), root_translation: Vec3::new(-t.x, t.y, t.z) }
+        Pose {
+            rotations: rotations.collect(),
+            root_translation: Vec3::new(-t.x, t.y, t.z),
+        }
     }
 
     fn mirrored_bone(&self, bone: usize) -> usize {
         let name = super::spec::mirrored_name(&self.skeleton.bones[bone].name);
-        self.skeleton.bones.iter().position(|other| other.name == name).unwrap_or(bone)
+        self.skeleton
+            .bones
+            .iter()
+            .position(|other| other.name == name)
+            .unwrap_or(bone)
     }
 
     /// The pose's rotations, not yet moved onto the ground.

@@ -13,8 +13,26 @@ const ALLOWED_OVERLAP_M: f32 = 0.02;
 const ATTEMPTS: usize = 40;
 /// The limbs that a natural pose may take from different poses of the library.
 const LIMBS: [&[&str]; 4] = [
-    &["shoulder_l", "elbow_l", "forearm_l", "wrist_l", "clavicle_l", "fingers_l", "thumb_l", "index_l"],
-    &["shoulder_r", "elbow_r", "forearm_r", "wrist_r", "clavicle_r", "fingers_r", "thumb_r", "index_r"],
+    &[
+        "shoulder_l",
+        "elbow_l",
+        "forearm_l",
+        "wrist_l",
+        "clavicle_l",
+        "fingers_l",
+        "thumb_l",
+        "index_l",
+    ],
+    &[
+        "shoulder_r",
+        "elbow_r",
+        "forearm_r",
+        "wrist_r",
+        "clavicle_r",
+        "fingers_r",
+        "thumb_r",
+        "index_r",
+    ],
     &["neck"],
     &["spine"],
 ];
@@ -52,7 +70,11 @@ impl<'a> PoseSampler<'a> {
         });
         Self {
             controls,
-            poses: library.poses.iter().map(|pose| pose.values.clone()).collect(),
+            poses: library
+                .poses
+                .iter()
+                .map(|pose| pose.values.clone())
+                .collect(),
             limb_of: limb_of.collect(),
             random: ChaCha8Rng::seed_from_u64(seed),
         }
@@ -84,7 +106,12 @@ impl<'a> PoseSampler<'a> {
                 values = self.controls.mirror(&values);
             }
             let transforms = self.controls.transforms(&self.controls.rotations(&values));
-            if self.controls.body().overlaps(&transforms, ALLOWED_OVERLAP_M).is_empty() {
+            if self
+                .controls
+                .body()
+                .overlaps(&transforms, ALLOWED_OVERLAP_M)
+                .is_empty()
+            {
                 return values;
             }
         }
@@ -99,31 +126,44 @@ impl<'a> PoseSampler<'a> {
     /// A blend of two or three poses of the library, with own mixtures for the limbs.
     fn natural(&mut self, boldness: f32) -> PoseValues {
         let count = self.random.random_range(2..=3).min(self.poses.len());
-        let picks: Vec<usize> =
-            (0..count).map(|_| self.random.random_range(0..self.poses.len())).collect();
+        let picks: Vec<usize> = (0..count)
+            .map(|_| self.random.random_range(0..self.poses.len()))
+            .collect();
         let body = self.weights(count);
         let limbs: Vec<Vec<f32>> = LIMBS
             .iter()
-            .map(|_| if self.random.random_bool(0.5) { body.clone() } else { self.weights(count) })
+            .map(|_| {
+                if self.random.random_bool(0.5) {
+                    body.clone()
+                } else {
+                    self.weights(count)
+                }
+            })
             .collect();
         let mut values = self.controls.ease();
         for index in 0..values.degrees.len() {
             let weights = self.limb_of[index].map_or(&body, |limb| &limbs[limb]);
-            let blended: f32 =
-                weights.iter().zip(&picks).map(|(w, p)| w * self.poses[*p].degrees[index]).sum();
+            let blended: f32 = weights
+                .iter()
+                .zip(&picks)
+                .map(|(w, p)| w * self.poses[*p].degrees[index])
+                .sum();
             let control = &self.controls.list()[index];
-            values.degrees[index] =
-                blended + self.gaussian() * control.spread_deg * 0.3 * boldness;
+            values.degrees[index] = blended + self.gaussian() * control.spread_deg * 0.3 * boldness;
         }
-        values.lift_m =
-            body.iter().zip(&picks).map(|(w, pick)| w * self.poses[*pick].lift_m).sum();
+        values.lift_m = body
+            .iter()
+            .zip(&picks)
+            .map(|(w, pick)| w * self.poses[*pick].lift_m)
+            .sum();
         values
     }
 
     /// Weights that sum to 1, one of them mostly in the lead: poses averaged evenly all look alike.
     fn weights(&mut self, count: usize) -> Vec<f32> {
-        let mut weights: Vec<f32> =
-            (0..count).map(|_| self.random.random::<f32>().powi(3) + 1e-3).collect();
+        let mut weights: Vec<f32> = (0..count)
+            .map(|_| self.random.random::<f32>().powi(3) + 1e-3)
+            .collect();
         let sum: f32 = weights.iter().sum();
         weights.iter_mut().for_each(|weight| *weight /= sum);
         weights
@@ -140,7 +180,11 @@ impl<'a> PoseSampler<'a> {
             let reach = control.spread_deg * energy;
             // The middle moves from ease into the range as the limb gets livelier.
             let middle = control.ease_deg + (0.5 * (min + max) - control.ease_deg) * 0.5 * energy;
-            let tail = if self.random.random_bool(0.12) { 2.2 } else { 1.0 };
+            let tail = if self.random.random_bool(0.12) {
+                2.2
+            } else {
+                1.0
+            };
             let bell = self.gaussian() * reach * tail;
             values.degrees[index] = reflect(middle + bell, min, max);
         }

@@ -167,7 +167,11 @@ pub(crate) enum Half {
 impl Half {
     /// The sides that an entry called `name` stands for.
     pub(crate) fn of(name: &str) -> &'static [Half] {
-        if name.contains(BOTH) { &[Half::Left, Half::Right] } else { &[Half::Whole] }
+        if name.contains(BOTH) {
+            &[Half::Left, Half::Right]
+        } else {
+            &[Half::Whole]
+        }
     }
 
     /// A name with `@` and `#` replaced by this side's letter and the other's.
@@ -181,12 +185,20 @@ impl Half {
 
     /// A direction on this side.
     pub(crate) fn direction(self, v: Vec3) -> Vec3 {
-        if self == Half::Right { Vec3::new(-v.x, v.y, v.z) } else { v }
+        if self == Half::Right {
+            Vec3::new(-v.x, v.y, v.z)
+        } else {
+            v
+        }
     }
 
     /// A rotation axis on this side.
     pub(crate) fn axis(self, v: Vec3) -> Vec3 {
-        if self == Half::Right { Vec3::new(v.x, -v.y, -v.z) } else { v }
+        if self == Half::Right {
+            Vec3::new(v.x, -v.y, -v.z)
+        } else {
+            v
+        }
     }
 }
 
@@ -200,7 +212,11 @@ pub(crate) fn mirrored_name(name: &str) -> String {
     } else {
         stem.to_owned()
     };
-    if rest.is_empty() { turned } else { format!("{turned}.{rest}") }
+    if rest.is_empty() {
+        turned
+    } else {
+        format!("{turned}.{rest}")
+    }
 }
 
 /// A piecewise linear function through ascending points, constant outside them.
@@ -208,7 +224,9 @@ pub(crate) fn piecewise(points: &[(f32, f32)], x: f32) -> f32 {
     let Some(after) = points.iter().position(|p| p.0 > x) else {
         return points.last().map_or(f32::INFINITY, |p| p.1);
     };
-    let Some(before) = after.checked_sub(1) else { return points[0].1 };
+    let Some(before) = after.checked_sub(1) else {
+        return points[0].1;
+    };
     let (x0, y0) = points[before];
     let (x1, y1) = points[after];
     y0 + (y1 - y0) * (x - x0) / (x1 - x0)

@@ -28,7 +28,12 @@ impl Camera {
     /// A camera whose picture of the given shape just holds all points, with a margin.
     #[must_use]
     pub fn framing(points: &[Vec3], yaw_rad: f32, pitch_rad: f32, aspect: f32) -> Self {
-        let mut camera = Self { target: Vec3::ZERO, yaw_rad, pitch_rad, height_m: 1.0 };
+        let mut camera = Self {
+            target: Vec3::ZERO,
+            yaw_rad,
+            pitch_rad,
+            height_m: 1.0,
+        };
         let axes = camera.axes();
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         for point in points.iter().filter(|point| point.is_finite()) {
@@ -62,7 +67,14 @@ impl Camera {
     }
 
     /// The point on the plane through the target, facing the camera, that appears at a pixel.
-    pub(super) fn unproject(&self, axes: &[Vec3; 3], x: f32, y: f32, width: u32, height: u32) -> Vec3 {
+    pub(super) fn unproject(
+        &self,
+        axes: &[Vec3; 3],
+        x: f32,
+        y: f32,
+        width: u32,
+        height: u32,
+    ) -> Vec3 {
         let scale = self.height_m / height as f32;
         self.target
             + axes[0] * ((x - width as f32 / 2.0) * scale)

@@ -45,7 +45,10 @@ pub fn vertex_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
             }
         }
     }
-    normals.into_iter().map(|normal| normal.normalize_or(Vec3::Y)).collect()
+    normals
+        .into_iter()
+        .map(|normal| normal.normalize_or(Vec3::Y))
+        .collect()
 }
 
 /// Draws meshes over a light background, `width` x `height` pixels.

@@ -19,8 +19,12 @@ pub(super) struct Sample {
     pub(super) weights: Vec2,
 }
 
-const NOTHING: Sample =
-    Sample { depth: f32::NEG_INFINITY, mesh: 0, triangle: 0, weights: Vec2::ZERO };
+const NOTHING: Sample = Sample {
+    depth: f32::NEG_INFINITY,
+    mesh: 0,
+    triangle: 0,
+    weights: Vec2::ZERO,
+};
 
 /// A picture of samples.
 pub(super) struct Visible {
@@ -71,12 +75,19 @@ pub(super) fn draw(
         }
     }
     let mut samples = vec![NOTHING; (width * height) as usize];
-    samples.par_chunks_mut(width as usize * BAND).enumerate().for_each(|(band, rows)| {
-        for triangle in &projected {
-            triangle.fill(rows, band * BAND, width as usize);
-        }
-    });
-    Visible { width, height, samples }
+    samples
+        .par_chunks_mut(width as usize * BAND)
+        .enumerate()
+        .for_each(|(band, rows)| {
+            for triangle in &projected {
+                triangle.fill(rows, band * BAND, width as usize);
+            }
+        });
+    Visible {
+        width,
+        height,
+        samples,
+    }
 }
 
 impl Projected {

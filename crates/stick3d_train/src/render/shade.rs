@@ -30,7 +30,12 @@ impl Lights {
         let [right, _, back] = camera.axes();
         let level = right.cross(Vec3::Y);
         let turned = |d: Vec3| right * d.x + Vec3::Y * d.y + level * d.z;
-        Self { key: turned(KEY), fill: turned(FILL), rim: turned(RIM), back }
+        Self {
+            key: turned(KEY),
+            fill: turned(FILL),
+            rim: turned(RIM),
+            back,
+        }
     }
 }
 
@@ -45,19 +50,25 @@ pub(super) fn shade(
     let axes = camera.axes();
     let (width, height) = (visible.width, visible.height);
     let mut colors = vec![Vec3::ZERO; visible.samples.len()];
-    colors.par_chunks_mut(width as usize).enumerate().for_each(|(y, row)| {
-        for (x, color) in row.iter_mut().enumerate() {
-            let sample = &visible.samples[y * width as usize + x];
-            let plane =
-                camera.unproject(&axes, x as f32 + 0.5, y as f32 + 0.5, width, height);
-            *color = if sample.depth.is_finite() {
-                surface(meshes, sample, shadows, lights)
-            } else {
-                ground(plane, axes[2], y as f32 / height as f32, shadows)
-            };
-        }
-    });
-    Visible3 { width, height, colors }
+    colors
+        .par_chunks_mut(width as usize)
+        .enumerate()
+        .for_each(|(y, row)| {
+            for (x, color) in row.iter_mut().enumerate() {
+                let sample = &visible.samples[y * width as usize + x];
+                let plane = camera.unproject(&axes, x as f32 + 0.5, y as f32 + 0.5, width, height);
+                *color = if sample.depth.is_finite() {
+                    surface(meshes, sample, shadows, lights)
+                } else {
+                    ground(plane, axes[2], y as f32 / height as f32, shadows)
+                };
+            }
+        });
+    Visible3 {
+        width,
+        height,
+        colors,
+    }
 }
 
 /// A picture of linear colours.
@@ -118,6 +129,10 @@ pub(super) fn downsample(fine: &Visible3, width: u32, height: u32) -> RgbaImage 
 /// IEC 61966-2-1.
 fn srgb(linear: f32) -> u8 {
     let l = linear.clamp(0.0, 1.0);
-    let encoded = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
+    let encoded = if l <= 0.003_130_8 {
+        12.92 * l
+    } else {
+        1.055 * l.powf(1.0 / 2.4) - 0.055
+    };
     (encoded * 255.0 + 0.5) as u8
 }

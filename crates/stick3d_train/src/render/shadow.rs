@@ -25,7 +25,11 @@ impl Shadows {
     /// Looks at the meshes from the light, and from below.
     pub(super) fn cast(meshes: &[RenderMesh<'_>], toward_light: Vec3) -> Self {
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        for point in meshes.iter().flat_map(|mesh| mesh.positions).filter(|p| p.is_finite()) {
+        for point in meshes
+            .iter()
+            .flat_map(|mesh| mesh.positions)
+            .filter(|p| p.is_finite())
+        {
             (low, high) = (low.min(*point), high.max(*point));
         }
         if !low.is_finite() {
@@ -39,13 +43,28 @@ impl Shadows {
         let half = SIZE as f32 / 2.0;
         let from_light = |p: Vec3| {
             let d = p - middle;
-            Vec3::new(half + axes[0].dot(d) * scale, half + axes[1].dot(d) * scale, axes[2].dot(d))
+            Vec3::new(
+                half + axes[0].dot(d) * scale,
+                half + axes[1].dot(d) * scale,
+                axes[2].dot(d),
+            )
         };
-        let from_below =
-            |p: Vec3| Vec3::new(half + (p.x - middle.x) * scale, half + (p.z - middle.z) * scale, -p.y);
+        let from_below = |p: Vec3| {
+            Vec3::new(
+                half + (p.x - middle.x) * scale,
+                half + (p.z - middle.z) * scale,
+                -p.y,
+            )
+        };
         let lit = raster::draw(meshes, from_light, SIZE, SIZE);
         let below = raster::draw(meshes, from_below, SIZE, SIZE);
-        Self { toward_light: axes, middle, metres, lit, contact: contact(&below) }
+        Self {
+            toward_light: axes,
+            middle,
+            metres,
+            lit,
+            contact: contact(&below),
+        }
     }
 
     /// How much of the key light reaches a point: 1 all, 0 none.
@@ -107,11 +126,19 @@ fn blur(values: &[f32], radius: i32, along_rows: bool) -> Vec<f32> {
     let mut out = vec![0.0; values.len()];
     let size = SIZE as i32;
     let at = |line: i32, i: i32| {
-        if along_rows { line * size + i } else { i * size + line }
+        if along_rows {
+            line * size + i
+        } else {
+            i * size + line
+        }
     };
     for line in 0..size {
         let value = |i: i32| {
-            if (0..size).contains(&i) { values[at(line, i) as usize] } else { 0.0 }
+            if (0..size).contains(&i) {
+                values[at(line, i) as usize]
+            } else {
+                0.0
+            }
         };
         let mut sum: f32 = (-radius..radius).map(value).sum();
         for i in 0..size {

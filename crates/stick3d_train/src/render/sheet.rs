@@ -13,8 +13,16 @@ const LABEL: u32 = 12;
 /// their cell are cut.
 pub fn contact_sheet(items: &[(String, RgbaImage)], columns: u32) -> RgbaImage {
     let columns = columns.clamp(1, items.len().max(1) as u32);
-    let cell_width = items.iter().map(|(_, image)| image.width()).max().unwrap_or(1);
-    let cell_height = items.iter().map(|(_, image)| image.height()).max().unwrap_or(1);
+    let cell_width = items
+        .iter()
+        .map(|(_, image)| image.width())
+        .max()
+        .unwrap_or(1);
+    let cell_height = items
+        .iter()
+        .map(|(_, image)| image.height())
+        .max()
+        .unwrap_or(1);
     let rows = (items.len() as u32).div_ceil(columns).max(1);
     let (step_x, step_y) = (cell_width + GAP, cell_height + GAP + LABEL);
     let mut page =
@@ -25,7 +33,13 @@ pub fn contact_sheet(items: &[(String, RgbaImage)], columns: u32) -> RgbaImage {
         imageops::replace(&mut page, image, i64::from(x), i64::from(y));
         let fits: String = label.chars().take((cell_width / 8) as usize).collect();
         let indent = (cell_width - text_width_px(&fits, 1).min(cell_width)) / 2;
-        draw_text(&mut page, (x + indent, y + cell_height + 3), 1, [60, 64, 70], &fits);
+        draw_text(
+            &mut page,
+            (x + indent, y + cell_height + 3),
+            1,
+            [60, 64, 70],
+            &fits,
+        );
     }
     page
 }
@@ -42,6 +56,9 @@ mod tests {
         assert_eq!((page.width(), page.height()), (3 * 44 + 4, 2 * 46 + 4));
         let reds = page.pixels().filter(|p| p.0 == [255, 0, 0, 255]).count();
         assert_eq!(reds, 5 * 40 * 30);
-        assert!(page.pixels().any(|p| p.0 == [60, 64, 70, 255]), "no label was written");
+        assert!(
+            page.pixels().any(|p| p.0 == [60, 64, 70, 255]),
+            "no label was written"
+        );
     }
 }

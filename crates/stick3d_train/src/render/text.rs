@@ -13,10 +13,19 @@ pub fn text_width_px(text: &str, scale: u32) -> u32 {
 
 /// Writes `text` with its top left corner at (`x`, `y`). Letters outside ASCII show as `?`; what does not
 /// fit into the picture is cut off.
-pub fn draw_text(image: &mut RgbaImage, (x, y): (u32, u32), scale: u32, color: [u8; 3], text: &str) {
+pub fn draw_text(
+    image: &mut RgbaImage,
+    (x, y): (u32, u32),
+    scale: u32,
+    color: [u8; 3],
+    text: &str,
+) {
     let [r, g, b] = color;
     for (i, letter) in text.chars().enumerate() {
-        let rows = BASIC_FONTS.get(letter).or_else(|| BASIC_FONTS.get('?')).unwrap_or_default();
+        let rows = BASIC_FONTS
+            .get(letter)
+            .or_else(|| BASIC_FONTS.get('?'))
+            .unwrap_or_default();
         for (row, bits) in (0_u32..).zip(rows) {
             for column in (0..LETTER).filter(|column| bits >> column & 1 == 1) {
                 let left = x + (i as u32 * LETTER + column) * scale;
