@@ -13,12 +13,12 @@ use crate::args::BakeCommand;
 use crate::corpus::Corpus;
 use crate::failure::{Failure, Outcome};
 
-/// Cameras of the contact sheet: from the front and half from the side, degrees.
-const SHEET_VIEWS_DEG: [f32; 2] = [20.0, 80.0];
+/// Cameras of the contact sheet: between the front and the right side, degrees.
+const SHEET_VIEWS_DEG: [f32; 1] = [-35.0];
 /// Edge of one picture of the contact sheet, pixels.
-const SHEET_PICTURE_PX: u32 = 120;
+const SHEET_PICTURE_PX: u32 = 100;
 /// Poses in a row of the contact sheet.
-const SHEET_COLUMNS: u32 = 7;
+const SHEET_COLUMNS: u32 = 15;
 
 /// Runs `stick3d bake`.
 pub(crate) fn run(command: &BakeCommand) -> Outcome {

@@ -6,11 +6,16 @@ use super::text::{draw_text, text_width_px};
 
 /// Space between pictures, pixels.
 const GAP: u32 = 4;
-/// Space for a label under each picture, pixels.
-const LABEL: u32 = 12;
+/// Space for a label of two lines under each picture, pixels.
+const LABEL: u32 = 2 * LINE + 4;
+/// Height of a line and width of a letter, pixels.
+const LINE: u32 = 9;
+const LETTER: u32 = 8;
+/// Colours are rounded to multiples of this divisor of 255, which the eye hardly sees and packs well.
+const STEP: u8 = 5;
 
 /// Lays out labelled pictures row by row. Cells are as large as the largest picture; labels too long for
-/// their cell are cut.
+/// two lines under their cell are cut.
 pub fn contact_sheet(items: &[(String, RgbaImage)], columns: u32) -> RgbaImage {
     let columns = columns.clamp(1, items.len().max(1) as u32);
     let cell_width = items
@@ -31,17 +36,38 @@ pub fn contact_sheet(items: &[(String, RgbaImage)], columns: u32) -> RgbaImage {
         let x = GAP + (i % columns) * step_x;
         let y = GAP + (i / columns) * step_y;
         imageops::replace(&mut page, image, i64::from(x), i64::from(y));
-        let fits: String = label.chars().take((cell_width / 8) as usize).collect();
-        let indent = (cell_width - text_width_px(&fits, 1).min(cell_width)) / 2;
-        draw_text(
-            &mut page,
-            (x + indent, y + cell_height + 3),
-            1,
-            [60, 64, 70],
-            &fits,
-        );
+        for (line, text) in (0_u32..).zip(lines(label, (cell_width / LETTER) as usize)) {
+            let indent = (cell_width - text_width_px(&text, 1).min(cell_width)) / 2;
+            let top = y + cell_height + 3 + line * LINE;
+            draw_text(&mut page, (x + indent, top), 1, [60, 65, 70], &text);
+        }
     }
+    round_colors(&mut page);
     page
+}
+
+/// A label in at most two lines of so many letters, broken after an underscore where one fits.
+fn lines(label: &str, letters: usize) -> [String; 2] {
+    let letters_of: Vec<char> = label.chars().collect();
+    if letters_of.len() <= letters {
+        return [label.to_owned(), String::new()];
+    }
+    let start = &letters_of[..letters];
+    let cut = start
+        .iter()
+        .rposition(|&c| c == '_')
+        .map_or(letters, |at| at + 1);
+    let rest = letters_of[cut..].iter().take(letters);
+    [letters_of[..cut].iter().collect(), rest.collect()]
+}
+
+/// Rounds colours so that the page packs into half the file. Black and white stay.
+fn round_colors(page: &mut RgbaImage) {
+    for pixel in page.pixels_mut() {
+        for channel in &mut pixel.0 {
+            *channel = channel.saturating_add(STEP / 2) / STEP * STEP;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -53,12 +79,25 @@ mod tests {
         let red = RgbaImage::from_pixel(40, 30, Rgba([255, 0, 0, 255]));
         let items: Vec<_> = (0..5).map(|i| (format!("p{i}"), red.clone())).collect();
         let page = contact_sheet(&items, 3);
-        assert_eq!((page.width(), page.height()), (3 * 44 + 4, 2 * 46 + 4));
+        assert_eq!(
+            (page.width(), page.height()),
+            (3 * 44 + 4, 2 * (30 + GAP + LABEL) + GAP)
+        );
         let reds = page.pixels().filter(|p| p.0 == [255, 0, 0, 255]).count();
         assert_eq!(reds, 5 * 40 * 30);
         assert!(
-            page.pixels().any(|p| p.0 == [60, 64, 70, 255]),
+            page.pixels().any(|p| p.0 == [60, 65, 70, 255]),
             "no label was written"
         );
+    }
+
+    #[test]
+    fn long_labels_break_after_an_underscore() {
+        assert_eq!(lines("wave", 10), ["wave".to_owned(), String::new()]);
+        assert_eq!(
+            lines("walk_1_heel_strike_r", 13),
+            ["walk_1_heel_", "strike_r"]
+        );
+        assert_eq!(lines("abcdefgh", 3), ["abc", "def"]);
     }
 }
