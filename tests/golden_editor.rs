@@ -38,6 +38,7 @@ fn editor() -> PathBuf {
 /// Takes a picture of a sketch; none where there is no graphics adapter.
 fn picture(sketch: &Path, out: &Path) -> Option<RgbImage> {
     let output = Command::new(editor())
+        .current_dir(workspace())
         .args(["--size", "1280x720", "--sketch"])
         .arg(sketch)
         .arg("--screenshot")
@@ -77,7 +78,7 @@ fn the_editor_shows_a_sketch_as_it_was_approved() {
     let golden = workspace().join("tests/golden/editor.png");
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("editor.png");
-    let Some(shown) = picture(&workspace().join("assets/sketches/wave.json"), &out) else {
+    let Some(shown) = picture("assets/sketches/wave.json".as_ref(), &out) else {
         return;
     };
     if std::env::var_os("UPDATE_GOLDEN").is_some() {

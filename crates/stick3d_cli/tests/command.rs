@@ -138,12 +138,15 @@ fn every_form_of_sketch_gives_the_same_kind_of_answer() {
 
 #[test]
 fn wrong_sketches_end_with_3_and_say_why() {
+    let points: Vec<String> = (0..17).map(|i| format!("[{i},{}]", i * i)).collect();
+    let huge = format!(r#"{{"figure":"human","path":[{}]}}"#, points.join(","))
+        .replace("[3,9]", "[3,1e30]");
     let cases = [
         ("{", "line 1"),
         (r#"{"figure":"dragon","joints":{"neck":[0,1]}}"#, "dragon"),
         (r#"{"figure":"human","joints":{"nek":[0,1]}}"#, "neck"),
         (r#"{"figure":"human","joints":{"neck":[0,1]}}"#, "forehead"),
-        (r#"{"figure":"human","joints":{"neck":[0,1e30]}}"#, "neck"),
+        (&huge, "path point 3"),
         (r#"{"figure":"human","path":[[0,0],[0,1]]}"#, "17"),
     ];
     for (text, expected) in cases {
