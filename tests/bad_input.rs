@@ -1,4 +1,9 @@
 //! Bad sketches, latents and model files leave the app running, and are named.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and may say why it skips"
+)]
 
 mod support;
 

@@ -1,4 +1,9 @@
 //! A spawned sketch is a body in the same frame, and unchanged figures are left alone.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and may say why it skips"
+)]
 
 mod support;
 

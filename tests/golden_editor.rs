@@ -2,6 +2,11 @@
 //!
 //! `UPDATE_GOLDEN=1 cargo test -p bevy_stick3d --examples --test golden_editor` approves the present picture; look at it first.
 //! Where there is no graphics adapter the test says so and passes, unless `STICK3D_REQUIRE_GPU=1`.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and may say why it skips"
+)]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

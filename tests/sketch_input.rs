@@ -1,4 +1,9 @@
 //! A pointer draws the man, stroke by stroke, without any user interface: messages, events, body.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and may say why it skips"
+)]
 
 mod support;
 

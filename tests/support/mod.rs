@@ -1,5 +1,6 @@
 //! What the headless tests share: an app without window or renderer, and questions to ask of it.
 #![allow(dead_code, reason = "every test uses some of it")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::time::Duration;
 

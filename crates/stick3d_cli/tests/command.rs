@@ -1,4 +1,9 @@
 //! The `stick3d` command as a person runs it: what it prints, what it writes, how it ends.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and may say why it skips"
+)]
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

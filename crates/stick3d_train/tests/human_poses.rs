@@ -1,4 +1,9 @@
 //! Every claim about the human's poses: anatomy, ground, symmetry, and the sampler around them.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and may say why it skips"
+)]
 
 use std::sync::LazyLock;
 

@@ -85,7 +85,11 @@ impl Goal {
         match self {
             Self::Ground(names) => into.push(Bound::Ground(all(names)?)),
             Self::Balance(names) => into.push(Bound::Balance(all(names)?)),
-            Self::Level(name) => into.extend(all(&[name.clone()])?.into_iter().map(Bound::Level)),
+            Self::Level(name) => into.extend(
+                all(std::slice::from_ref(name))?
+                    .into_iter()
+                    .map(Bound::Level),
+            ),
             Self::Reach { part, of, at } => {
                 for &half in Half::of(part) {
                     let bone = controls.skeleton.bone_index(&half.name(of))?;

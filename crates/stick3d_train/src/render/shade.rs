@@ -11,7 +11,7 @@ use super::{Camera, RenderMesh};
 /// Toward the lights, unit vectors seen from the camera: right, up, toward the camera.
 const KEY: Vec3 = Vec3::new(-0.457_496, 0.762_493, 0.457_496);
 const FILL: Vec3 = Vec3::new(0.8, 0.2, 0.565_685);
-const RIM: Vec3 = Vec3::new(0.5, 0.5, -0.707_107);
+const RIM: Vec3 = Vec3::new(0.5, 0.5, -std::f32::consts::FRAC_1_SQRT_2);
 /// Brightness of the background, linear: top and bottom.
 const BACKGROUND: [f32; 2] = [0.86, 0.74];
 
