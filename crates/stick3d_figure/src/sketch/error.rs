@@ -61,7 +61,7 @@ pub enum SketchError {
     BufferLength {
         /// The figure.
         figure: String,
-        /// [`Figure::input_len`].
+        /// [`Figure::input_len`](crate::Figure::input_len).
         expected: usize,
         /// The buffer's length.
         got: usize,
