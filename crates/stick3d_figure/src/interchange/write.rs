@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::{Drawing, InterchangeError};
 use crate::figure::Figure;
-use crate::sketch::SketchError;
+use crate::sketch::check_count;
 
 pub(super) fn json(figure: &Figure, drawing: &Drawing) -> Result<String, InterchangeError> {
     let (key, open, lines, close) = match drawing {
@@ -61,22 +61,4 @@ fn short(value: f32) -> Value {
         .to_string()
         .parse::<f64>()
         .map_or(Value::Null, Value::from)
-}
-
-fn check_count(
-    figure: &Figure,
-    what: &'static str,
-    expected: usize,
-    got: usize,
-) -> Result<(), InterchangeError> {
-    if expected == got {
-        return Ok(());
-    }
-    Err(SketchError::Count {
-        figure: figure.name.clone(),
-        what,
-        expected,
-        got,
-    }
-    .into())
 }

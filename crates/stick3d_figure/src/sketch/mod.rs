@@ -225,7 +225,8 @@ impl From<Sketch> for Vec<Vec2> {
     }
 }
 
-fn check_count(
+/// Fails unless as many points came as the figure needs.
+pub(crate) fn check_count(
     figure: &Figure,
     what: &'static str,
     expected: usize,
