@@ -37,7 +37,8 @@ pub(crate) fn run(command: &BakeCommand) -> Outcome {
                 &SHEET_VIEWS_DEG,
                 SHEET_PICTURE_PX,
                 SHEET_COLUMNS,
-            );
+            )
+            .map_err(Failure::input)?;
             write_png(out, &sheet)?;
             println!("{}: {} poses", out.display(), corpus.library.poses.len());
             Ok(())

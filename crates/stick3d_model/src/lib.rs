@@ -8,6 +8,8 @@
 //! - [`export`] writes meshes for other programs.
 
 pub mod architecture;
+pub mod color;
+pub mod digest;
 pub mod export;
 pub mod file;
 pub mod files;

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use stick3d_figure::figure::Figure;
 
 use crate::architecture::Architecture;
+use crate::digest::hex;
 
 /// The version of the file format that this code writes, and the newest that it reads.
 pub const FORMAT_VERSION: u32 = 1;
@@ -61,18 +62,6 @@ pub fn topology_hash(vertex_count: usize, triangles: &[[u32; 3]]) -> String {
         hasher.update(index.to_le_bytes());
     }
     hex(&hasher.finalize())
-}
-
-/// Lower-case hexadecimal digits.
-pub(crate) fn hex(bytes: &[u8]) -> String {
-    use std::fmt::Write as _;
-    bytes
-        .iter()
-        .fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {
-            // Writing into a String cannot fail.
-            let _ = write!(text, "{byte:02x}");
-            text
-        })
 }
 
 #[cfg(test)]

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
 use stick3d_figure::Figure;
-use stick3d_train::bake::{bake_human, human, sha256_hex};
+use stick3d_model::digest::sha256_hex;
+use stick3d_train::bake::{bake_human, human};
 use stick3d_train::rig::{Pose, Rig, Skinning, regressor};
 
 fn rigs() -> PathBuf {

@@ -3,6 +3,7 @@
 //! All have metres, +y up, and the triangles' order of corners counter-clockwise seen from outside.
 
 mod glb;
+pub mod gltf_file;
 mod text;
 
 use std::path::Path;
@@ -131,17 +132,6 @@ fn check(mesh: &ExportMesh<'_>) -> Result<(), ExportError> {
         return fault("a position or normal is not finite".to_owned());
     }
     Ok(())
-}
-
-/// A linear colour byte as the sRGB byte that text formats hold.
-fn srgb(linear: u8) -> u8 {
-    let x = f32::from(linear) / 255.0;
-    let y = if x <= 0.003_130_8 {
-        12.92 * x
-    } else {
-        1.055 * x.powf(1.0 / 2.4) - 0.055
-    };
-    (255.0 * y).round() as u8
 }
 
 #[cfg(test)]

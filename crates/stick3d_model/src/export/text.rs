@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::{ExportMesh, srgb};
+use super::ExportMesh;
+use crate::color::srgb_byte;
 
 /// Writing into a `String` cannot fail; this says so in one place.
 macro_rules! put {
@@ -49,7 +50,7 @@ pub(super) fn ply(mesh: &ExportMesh<'_>) -> String {
     for (([x, y, z], [nx, ny, nz]), [r, g, b, a]) in
         mesh.positions.iter().zip(mesh.normals).zip(mesh.colors)
     {
-        let [r, g, b] = [*r, *g, *b].map(srgb);
+        let [r, g, b] = [*r, *g, *b].map(|linear| srgb_byte(f32::from(linear) / 255.0));
         put!(
             text,
             "{x:.6} {y:.6} {z:.6} {nx:.5} {ny:.5} {nz:.5} {r} {g} {b} {a}"

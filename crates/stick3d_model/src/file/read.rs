@@ -8,10 +8,11 @@ use sha2::Digest as _;
 use stick3d_figure::regressor::JointRegressor;
 
 use super::{ENTRY, ModelError, add_to_checksum, checksum_of_metadata};
+use crate::digest::hex;
 use crate::final_layer::{
     BasisLayer, DenseLayer, FinalLayer, Rotations, SkinnedLayer, SkinnedParts,
 };
-use crate::metadata::{FORMAT_VERSION, Metadata, hex};
+use crate::metadata::{FORMAT_VERSION, Metadata};
 use crate::model::ModelParts;
 use crate::weights::{Encoder3dWeights, LinearWeights, MlpWeights};
 

@@ -8,8 +8,8 @@ use safetensors::tensor::TensorView;
 use sha2::Digest as _;
 
 use super::{ENTRY, ModelError, add_to_checksum, checksum_of_metadata};
+use crate::digest::hex;
 use crate::final_layer::FinalLayer;
-use crate::metadata::hex;
 use crate::model::ModelParts;
 use crate::weights::{LinearWeights, MlpWeights};
 

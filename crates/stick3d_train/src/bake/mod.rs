@@ -15,7 +15,7 @@ mod wheel;
 
 use std::path::Path;
 
-use sha2::{Digest as _, Sha256};
+use stick3d_model::digest::sha256_hex;
 use stick3d_model::files::write_atomically;
 
 pub use error::BakeError;
@@ -62,12 +62,4 @@ pub fn bake_human(wheel: &Path, out: &Path) -> Result<BakeReport, BakeError> {
         file_bytes: bytes.len(),
         sha256: sha256_hex(&bytes),
     })
-}
-
-/// The sha256 of some bytes, in lower-case hexadecimal.
-pub fn sha256_hex(bytes: &[u8]) -> String {
-    Sha256::digest(bytes)
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
 }

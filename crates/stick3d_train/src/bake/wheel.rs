@@ -4,9 +4,10 @@ use std::io::{self, Cursor, Read as _};
 use std::path::Path;
 
 use flate2::read::{DeflateDecoder, GzDecoder};
+use stick3d_model::digest::sha256_hex;
 use zip::{CompressionMethod, ZipArchive};
 
-use super::{BakeError, sha256_hex};
+use super::BakeError;
 
 /// A wheel that is known to be the right one.
 pub(super) struct Wheel {

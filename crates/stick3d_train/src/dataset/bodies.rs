@@ -4,6 +4,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use sha2::Digest as _;
 use stick3d_figure::regressor::JointRegressor;
+use stick3d_model::digest::hex;
 
 use super::SkinBasis;
 use crate::rig::{Pose, Rig};
@@ -98,11 +99,7 @@ impl BodySet {
         for joint in &self.joints {
             hasher.update(bytemuck::cast_slice::<f32, u8>(&joint.to_array()));
         }
-        hasher
-            .finalize()
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect()
+        hex(&hasher.finalize())
     }
 }
 

@@ -5,11 +5,14 @@ use rayon::prelude::*;
 
 use super::controls::Controls;
 use super::library::PoseLibrary;
-use crate::render::{Camera, RenderMesh, contact_sheet, render, vertex_normals};
-use crate::rig::Rig;
+use crate::render::{Camera, RenderMesh, contact_sheet, render};
+use crate::rig::{Rig, RigError};
 
 /// Draws all poses of a library, each seen from several directions `views` (yaw of the camera, degrees;
 /// 0 = front, 90 = the body's left), every picture `size` pixels square, `columns` poses in a row.
+///
+/// # Errors
+/// [`RigError::Inconsistent`] for a rig that [`Rig::validate`] refuses.
 pub fn pose_sheet(
     rig: &Rig,
     controls: &Controls,
@@ -17,12 +20,12 @@ pub fn pose_sheet(
     views: &[f32],
     size: u32,
     columns: u32,
-) -> RgbaImage {
+) -> Result<RgbaImage, RigError> {
     let draw = |pose: &super::NamedPose| {
         let posed = controls.pose_on_ground(&pose.values, rig);
         let mut positions = Vec::new();
         rig.skin(&posed, &mut positions);
-        let normals = vertex_normals(&positions, &rig.mesh.triangles);
+        let normals = rig.vertex_normals(&positions)?;
         let mesh = RenderMesh {
             positions: &positions,
             normals: &normals,
@@ -35,8 +38,8 @@ pub fn pose_sheet(
             let image = render(&[mesh], &camera, size, size);
             image::imageops::replace(&mut strip, &image, i64::from(i * size), 0);
         }
-        (pose.name.clone(), strip)
+        Ok((pose.name.clone(), strip))
     };
-    let items: Vec<_> = library.poses.par_iter().map(draw).collect();
-    contact_sheet(&items, columns)
+    let items: Result<Vec<_>, RigError> = library.poses.par_iter().map(draw).collect();
+    Ok(contact_sheet(&items?, columns))
 }

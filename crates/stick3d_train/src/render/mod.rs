@@ -25,30 +25,12 @@ pub use text::{draw_text, text_width_px};
 pub struct RenderMesh<'a> {
     /// One position per vertex.
     pub positions: &'a [Vec3],
-    /// One unit normal per vertex, see [`vertex_normals`].
+    /// One unit normal per vertex; a vertex without one is lit as if it faced up.
     pub normals: &'a [Vec3],
     /// One colour per vertex: linear red, green, blue; the fourth number is ignored.
     pub colors: &'a [[u8; 4]],
     /// Vertex numbers, counter-clockwise seen from outside. Numbers past the last vertex draw nothing.
     pub triangles: &'a [[u32; 3]],
-}
-
-/// Area-weighted vertex normals.
-pub fn vertex_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let mut normals = vec![Vec3::ZERO; positions.len()];
-    for triangle in triangles {
-        let corner = |i: usize| positions.get(triangle[i] as usize).copied();
-        if let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) {
-            let twice_area = (b - a).cross(c - a);
-            for &vertex in triangle {
-                normals[vertex as usize] += twice_area;
-            }
-        }
-    }
-    normals
-        .into_iter()
-        .map(|normal| normal.normalize_or(Vec3::Y))
-        .collect()
 }
 
 /// Draws meshes over a light background, `width` x `height` pixels.

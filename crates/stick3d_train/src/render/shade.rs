@@ -3,6 +3,7 @@
 use glam::Vec3;
 use image::{Rgba, RgbaImage};
 use rayon::prelude::*;
+use stick3d_model::color::srgb_byte;
 
 use super::raster::{Sample, Visible};
 use super::shadow::Shadows;
@@ -121,18 +122,7 @@ pub(super) fn downsample(fine: &Visible3, width: u32, height: u32) -> RgbaImage 
     RgbaImage::from_fn(width, height, |x, y| {
         let at = |dx: u32, dy: u32| fine.colors[((2 * y + dy) * fine.width + 2 * x + dx) as usize];
         let mean = (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)) / 4.0;
-        let [r, g, b] = mean.to_array().map(srgb);
+        let [r, g, b] = mean.to_array().map(srgb_byte);
         Rgba([r, g, b, 255])
     })
-}
-
-/// IEC 61966-2-1.
-fn srgb(linear: f32) -> u8 {
-    let l = linear.clamp(0.0, 1.0);
-    let encoded = if l <= 0.003_130_8 {
-        12.92 * l
-    } else {
-        1.055 * l.powf(1.0 / 2.4) - 0.055
-    };
-    (encoded * 255.0 + 0.5) as u8
 }

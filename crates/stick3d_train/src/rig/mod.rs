@@ -23,7 +23,7 @@ use glam::Vec3;
 pub use regressor::regressor;
 pub use skeleton::{Bone, Pose, Skeleton};
 pub use skinning::Skinning;
-use stick3d_figure::mesh::TriangleMesh;
+use stick3d_figure::mesh::{NormalAdjacency, TriangleMesh};
 
 /// The largest number of bones that one vertex may follow: two glTF attribute sets of four.
 pub const MAX_INFLUENCES: usize = 8;
@@ -119,5 +119,22 @@ impl Rig {
             }
         }
         Ok(())
+    }
+
+    /// The unit normals of the rig's surface with its vertices at `positions`.
+    ///
+    /// # Errors
+    /// [`RigError::Inconsistent`] when a triangle names a vertex that has no position.
+    pub fn vertex_normals(&self, positions: &[Vec3]) -> Result<Vec<Vec3>, RigError> {
+        let adjacency =
+            NormalAdjacency::new(&self.mesh.triangles, positions.len()).map_err(|fault| {
+                RigError::Inconsistent {
+                    what: fault.to_string(),
+                }
+            })?;
+        let positions: Vec<[f32; 3]> = positions.iter().map(Vec3::to_array).collect();
+        let mut normals = vec![[0.0; 3]; positions.len()];
+        adjacency.vertex_normals(&positions, &mut normals);
+        Ok(normals.into_iter().map(Vec3::from).collect())
     }
 }

@@ -1,15 +1,11 @@
 //! Writing a rig as a binary glTF that other software opens.
 
-use std::borrow::Cow;
-
 use glam::{Mat4, Vec3};
-use gltf::binary::{Glb, Header};
 use gltf::json;
-use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
-use gltf::json::buffer::Target;
+use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::Semantic;
-use gltf::json::validation::{Checked, USize64};
-use stick3d_figure::mesh::NormalAdjacency;
+use gltf::json::validation::Checked;
+use stick3d_model::export::gltf_file::{Attributes, GltfFile, Layout};
 
 use super::{Rig, RigError};
 
@@ -24,25 +20,22 @@ impl Rig {
     /// [`RigError::Inconsistent`] for a rig that [`Rig::validate`] refuses.
     pub fn to_glb(&self) -> Result<Vec<u8>, RigError> {
         self.validate()?;
-        let mut file = File::default();
+        let mut file = GltfFile::default();
         file.root.asset.copyright.clone_from(&self.copyright);
-        file.root.asset.generator = Some("stick3d".into());
         let mesh = self.write_mesh(&mut file)?;
         self.write_scene(&mut file, mesh);
-        file.finish()
+        Ok(file.finish()?)
     }
 
-    fn write_mesh(&self, file: &mut File) -> Result<json::Index<json::Mesh>, RigError> {
-        let mut attributes = std::collections::BTreeMap::new();
+    fn write_mesh(&self, file: &mut GltfFile) -> Result<json::Index<json::Mesh>, RigError> {
+        let mut attributes = Attributes::new();
         let mut set = |semantic, accessor| attributes.insert(Checked::Valid(semantic), accessor);
-        set(Semantic::Positions, self.write_positions(file));
-        set(Semantic::Normals, self.write_normals(file)?);
-        let colors = self.colors.concat();
-        let bytes = Layout::attribute(Type::Vec4, ComponentType::U8, self.colors.len());
-        set(
-            Semantic::Colors(0),
-            file.accessor(&colors, bytes.normalized()),
-        );
+        let arrays = |points: &[Vec3]| points.iter().map(Vec3::to_array).collect::<Vec<_>>();
+        let positions = &self.mesh.positions;
+        let normals = self.vertex_normals(positions)?;
+        set(Semantic::Positions, file.positions(&arrays(positions)));
+        set(Semantic::Normals, file.normals(&arrays(&normals)));
+        set(Semantic::Colors(0), file.colors(&self.colors));
         let most = self.influences.iter().map(Vec::len).max().unwrap_or(0);
         for group in 0..most.div_ceil(4) {
             let (joints, weights) = self.influence_group(group);
@@ -60,59 +53,8 @@ impl Rig {
             let weights = file.accessor(bytemuck::cast_slice(&weights), of_words.normalized());
             set(Semantic::Weights(set_index), weights);
         }
-        let indices = self.write_indices(file);
-        let material = file.root.push(cloth_material());
-        let primitive = json::mesh::Primitive {
-            attributes,
-            extensions: None,
-            extras: None,
-            indices: Some(indices),
-            material: Some(material),
-            mode: Checked::Valid(json::mesh::Mode::Triangles),
-            targets: None,
-        };
-        Ok(file.root.push(json::Mesh {
-            extensions: None,
-            extras: None,
-            name: Some(self.name.clone()),
-            primitives: vec![primitive],
-            weights: None,
-        }))
-    }
-
-    fn write_positions(&self, file: &mut File) -> json::Index<json::Accessor> {
-        let points = &self.mesh.positions;
-        let bytes: Vec<[f32; 3]> = points.iter().map(Vec3::to_array).collect();
-        let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
-        let high = points.iter().copied().reduce(Vec3::max).unwrap_or_default();
-        let mut layout = Layout::attribute(Type::Vec3, ComponentType::F32, points.len());
-        layout.bounds = Some((low, high));
-        file.accessor(bytemuck::cast_slice(&bytes), layout)
-    }
-
-    fn write_normals(&self, file: &mut File) -> Result<json::Index<json::Accessor>, RigError> {
-        let positions: Vec<[f32; 3]> = self.mesh.positions.iter().map(Vec3::to_array).collect();
-        let mut normals = vec![[0.0; 3]; positions.len()];
-        NormalAdjacency::new(&self.mesh.triangles, positions.len())
-            .map_err(|fault| RigError::Inconsistent {
-                what: fault.to_string(),
-            })?
-            .vertex_normals(&positions, &mut normals);
-        let layout = Layout::attribute(Type::Vec3, ComponentType::F32, normals.len());
-        Ok(file.accessor(bytemuck::cast_slice(&normals), layout))
-    }
-
-    fn write_indices(&self, file: &mut File) -> json::Index<json::Accessor> {
-        let indices = self.mesh.triangles.as_flattened();
-        let mut layout = Layout::attribute(Type::Scalar, ComponentType::U32, indices.len());
-        layout.target = Some(Target::ElementArrayBuffer);
-        // 65,535 is left out: some graphics interfaces read it as "start a new strip".
-        if self.mesh.positions.len() < usize::from(u16::MAX) {
-            layout.component = ComponentType::U16;
-            let narrow: Vec<u16> = indices.iter().map(|&index| index as u16).collect();
-            return file.accessor(bytemuck::cast_slice(&narrow), layout);
-        }
-        file.accessor(bytemuck::cast_slice(indices), layout)
+        let indices = file.triangles(&self.mesh.triangles, positions.len());
+        Ok(file.body(&self.name, attributes, indices))
     }
 
     /// The bones and 16-bit weights of the `group`-th four influences of every vertex.
@@ -132,7 +74,7 @@ impl Rig {
         (joints, weights)
     }
 
-    fn write_scene(&self, file: &mut File, mesh: json::Index<json::Mesh>) {
+    fn write_scene(&self, file: &mut GltfFile, mesh: json::Index<json::Mesh>) {
         let bones = &self.skeleton.bones;
         let globals: Vec<Mat4> = bones
             .iter()
@@ -142,8 +84,7 @@ impl Rig {
             .iter()
             .map(|global| global.inverse().to_cols_array())
             .collect();
-        let mut layout = Layout::attribute(Type::Mat4, ComponentType::F32, bones.len());
-        layout.target = None;
+        let layout = Layout::data(Type::Mat4, ComponentType::F32, bones.len());
         let inverse_bind_matrices = Some(file.accessor(bytemuck::cast_slice(&inverse), layout));
 
         // Nodes 0.. are the bones, in order; then the skinned mesh, which hangs at the scene's root.
@@ -189,13 +130,7 @@ impl Rig {
             skin: Some(skin),
             ..Default::default()
         });
-        let scene = file.root.push(json::Scene {
-            extensions: None,
-            extras: None,
-            name: None,
-            nodes: roots.into_iter().chain([body]).collect(),
-        });
-        file.root.scene = Some(scene);
+        file.scene(roots.into_iter().chain([body]).collect());
     }
 }
 
@@ -215,112 +150,4 @@ fn weights_as_words(list: &[(u16, f32)]) -> Vec<u16> {
         words[slot] += 1;
     }
     words
-}
-
-/// A matt, one-sided material; its colour is the vertices' own.
-fn cloth_material() -> json::Material {
-    use json::material::{PbrMetallicRoughness, StrengthFactor};
-    json::Material {
-        name: Some("body".into()),
-        double_sided: false,
-        pbr_metallic_roughness: PbrMetallicRoughness {
-            metallic_factor: StrengthFactor(0.0),
-            roughness_factor: StrengthFactor(0.8),
-            ..Default::default()
-        },
-        ..Default::default()
-    }
-}
-
-/// How an accessor reads its bytes.
-#[derive(Clone)]
-struct Layout {
-    shape: Type,
-    component: ComponentType,
-    count: usize,
-    target: Option<Target>,
-    normalized: bool,
-    bounds: Option<(Vec3, Vec3)>,
-}
-
-impl Layout {
-    fn attribute(shape: Type, component: ComponentType, count: usize) -> Self {
-        let target = Some(Target::ArrayBuffer);
-        Self {
-            shape,
-            component,
-            count,
-            target,
-            normalized: false,
-            bounds: None,
-        }
-    }
-
-    fn normalized(mut self) -> Self {
-        self.normalized = true;
-        self
-    }
-}
-
-/// The two chunks of the file while they grow.
-#[derive(Default)]
-struct File {
-    root: json::Root,
-    bytes: Vec<u8>,
-}
-
-impl File {
-    /// Appends `bytes`, aligned to four, with a view of their own and an accessor on it.
-    fn accessor(&mut self, bytes: &[u8], layout: Layout) -> json::Index<json::Accessor> {
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        let view = self.root.push(json::buffer::View {
-            buffer: json::Index::new(0),
-            byte_length: USize64::from(bytes.len()),
-            byte_offset: Some(USize64::from(self.bytes.len())),
-            byte_stride: None,
-            extensions: None,
-            extras: None,
-            name: None,
-            target: layout.target.map(Checked::Valid),
-        });
-        self.bytes.extend_from_slice(bytes);
-        let corner = |point: Vec3| json::Value::from(point.to_array().to_vec());
-        self.root.push(json::Accessor {
-            buffer_view: Some(view),
-            byte_offset: None,
-            count: USize64::from(layout.count),
-            component_type: Checked::Valid(GenericComponentType(layout.component)),
-            extensions: None,
-            extras: None,
-            type_: Checked::Valid(layout.shape),
-            min: layout.bounds.map(|(low, _)| corner(low)),
-            max: layout.bounds.map(|(_, high)| corner(high)),
-            name: None,
-            normalized: layout.normalized,
-            sparse: None,
-        })
-    }
-
-    fn finish(mut self) -> Result<Vec<u8>, RigError> {
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        self.root.push(json::Buffer {
-            byte_length: USize64::from(self.bytes.len()),
-            extensions: None,
-            extras: None,
-            name: None,
-            uri: None,
-        });
-        let description = json::serialize::to_vec(&self.root)?;
-        let header = Header {
-            magic: *b"glTF",
-            version: 2,
-            length: 0,
-        };
-        let glb = Glb {
-            header,
-            json: Cow::Owned(description),
-            bin: Some(Cow::Owned(self.bytes)),
-        };
-        Ok(glb.to_vec()?)
-    }
 }

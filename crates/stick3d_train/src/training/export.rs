@@ -11,15 +11,6 @@ use super::networks::NetworkWeights;
 use super::run::{Run, TrainInput};
 use super::{TrainConfig, TrainError};
 
-/// SHA-256 of a text, in hexadecimal digits.
-pub(super) fn hash_text(text: &str) -> String {
-    use sha2::Digest as _;
-    sha2::Sha256::digest(text.as_bytes())
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
-}
-
 /// The model: normalisation folded into the networks, weights rounded as the file stores them.
 pub(super) fn model(
     input: &TrainInput<'_>,

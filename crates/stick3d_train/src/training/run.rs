@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use stick3d_figure::figure::Figure;
 use stick3d_figure::regressor::JointRegressor;
 use stick3d_model::Model;
+use stick3d_model::digest::sha256_hex;
 
 use super::adam::Adam;
 use super::checkpoint::Checkpoint;
@@ -137,7 +138,7 @@ impl<'r, 'a> Run<'r, 'a> {
         let device = Device::flex().autodiff();
         let losses = Losses::new(figure, &basis, &scale, extent_m, config.loss, &device);
         let data_hash = bodies.hash();
-        let identity = export::hash_text(&format!("{config:?} {data_hash}"));
+        let identity = sha256_hex(format!("{config:?} {data_hash}").as_bytes());
         Ok(Self {
             input,
             config,

@@ -1,0 +1,33 @@
+//! Colours: linear light and its encoding for screens.
+
+/// A linear brightness, 1 = white, as the sRGB byte that screens and text formats hold (IEC 61966-2-1).
+#[must_use]
+pub fn srgb_byte(linear: f32) -> u8 {
+    let x = linear.clamp(0.0, 1.0);
+    let encoded = if x <= 0.003_130_8 {
+        12.92 * x
+    } else {
+        1.055 * x.powf(1.0 / 2.4) - 0.055
+    };
+    (255.0 * encoded).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::srgb_byte;
+
+    #[test]
+    fn the_curve_is_the_standards() {
+        // The ends, what lies beyond them, the middle grey of photographers, and the straight part near black.
+        for (linear, byte) in [
+            (0.0, 0),
+            (1.0, 255),
+            (7.0, 255),
+            (-1.0, 0),
+            (0.18, 118),
+            (0.002, 7),
+        ] {
+            assert_eq!(srgb_byte(linear), byte, "{linear}");
+        }
+    }
+}
