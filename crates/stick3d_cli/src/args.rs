@@ -112,6 +112,9 @@ pub(crate) struct EvalArguments {
     /// The body and its poses
     #[command(flatten)]
     pub(crate) body: BodyFiles,
+    /// Measures motions between and beyond sketched keys instead of single poses
+    #[arg(long)]
+    pub(crate) motion: bool,
     /// Prints the whole report as JSON instead of a table
     #[arg(long)]
     pub(crate) json: bool,

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use serde::Serialize;
 use stick3d_model::Model;
 use stick3d_train::evaluate::{self, Drawn, EvalConfig, EvalInput, Report};
 use stick3d_train::rig::Pose;
@@ -10,8 +11,8 @@ use stick3d_train::training::Progress;
 use crate::args::EvalArguments;
 use crate::corpus::Corpus;
 use crate::failure::{Failure, Outcome};
-use crate::inputs;
 use crate::progress::Bar;
+use crate::{eval_motion, inputs};
 
 /// Poses of the nearest-neighbour baseline: as many as the paper's data set has (section 4.1).
 const BASELINE_POSES: usize = 72;
@@ -24,13 +25,23 @@ pub(crate) fn run(arguments: &EvalArguments) -> Outcome {
     let model = inputs::model(arguments.model.as_deref())?;
     let corpus = Corpus::read(&arguments.body)?;
     let bar = Bar::new();
+    if arguments.motion {
+        let report = eval_motion::measure(&model, &corpus, &bar)?;
+        bar.clear();
+        return print(&report, arguments.json, eval_motion::table);
+    }
     let report = measure(&model, &corpus, &EvalConfig::default(), &bar)?;
     bar.clear();
-    if arguments.json {
-        let json = serde_json::to_string_pretty(&report).map_err(anyhow::Error::from)?;
+    print(&report, arguments.json, table)
+}
+
+/// Prints a report as JSON or as a table.
+fn print<R: Serialize>(report: &R, as_json: bool, table: fn(&R) -> String) -> Outcome {
+    if as_json {
+        let json = serde_json::to_string_pretty(report).map_err(anyhow::Error::from)?;
         println!("{json}");
     } else {
-        println!("{}", table(&report));
+        println!("{}", table(report));
     }
     Ok(())
 }

@@ -9,6 +9,7 @@ mod args;
 mod bake;
 mod corpus;
 mod eval;
+mod eval_motion;
 mod failure;
 mod inputs;
 mod pose;

@@ -4,6 +4,7 @@
 //!
 //! - [`Model`] is everything one trained figure consists of, and what a `.stick3d` file holds.
 //! - [`Inference`] runs a model at frame rate: sketch to latent to mesh, on plain arrays, allocating nothing.
+//! - [`latent`] has motions: paths through latent space between and beyond keys, standing on the ground.
 //! - [`network`] has the same networks as Burn modules, for training and as the reference that tests compare with.
 //! - [`export`] writes meshes for other programs.
 
@@ -16,6 +17,7 @@ pub mod files;
 pub mod final_layer;
 pub mod infer;
 mod kernels;
+pub mod latent;
 pub mod metadata;
 pub mod model;
 pub mod network;
@@ -27,5 +29,6 @@ pub use architecture::Architecture;
 pub use file::ModelError;
 pub use final_layer::FinalLayer;
 pub use infer::{InferError, Inference};
+pub use latent::{LatentKey, LatentPath, Motion};
 pub use metadata::Metadata;
 pub use model::{Model, ModelParts};

@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use stick3d_figure::figure::Figure;
+use stick3d_figure::mesh::unique_edges;
 use stick3d_figure::regressor::JointRegressor;
 
 use crate::file::{self, ModelError};
 use crate::files::write_atomically;
 use crate::final_layer::FinalLayer;
+use crate::latent::TrainingStatistics;
 use crate::metadata::{Metadata, topology_hash};
 use crate::weights::{Encoder3dWeights, MlpWeights};
 
@@ -30,6 +32,8 @@ pub struct ModelParts {
     pub head: MlpWeights,
     /// Coefficients to vertices.
     pub final_layer: FinalLayer,
+    /// What the training set was like. Model files need not have it.
+    pub statistics: Option<TrainingStatistics>,
 }
 
 /// Everything of one trained figure. Its parts fit together: that is checked when it is made.
@@ -46,6 +50,10 @@ impl Model {
     pub fn new(parts: ModelParts) -> Result<Self, ModelError> {
         check_mesh(&parts)?;
         check_networks(&parts)?;
+        if let Some(statistics) = &parts.statistics {
+            let edges = unique_edges(&parts.triangles).len();
+            statistics.validate(parts.metadata.latent_len, edges)?;
+        }
         Ok(Self { parts })
     }
 
@@ -168,6 +176,12 @@ impl Model {
     #[must_use]
     pub fn final_layer(&self) -> &FinalLayer {
         &self.parts.final_layer
+    }
+
+    /// What the training set was like, where the model file says.
+    #[must_use]
+    pub fn statistics(&self) -> Option<&TrainingStatistics> {
+        self.parts.statistics.as_ref()
     }
 
     /// Takes the model apart, to make another from its parts.

@@ -1,12 +1,14 @@
 //! A small model made of arithmetic, for tests: sound in every respect, trained in none.
 
 use stick3d_figure::figure::Figure;
+use stick3d_figure::mesh::unique_edges;
 use stick3d_figure::regressor::JointRegressor;
 
 use crate::architecture::Architecture;
 use crate::final_layer::{
     BasisLayer, DenseLayer, FinalLayer, Rotations, SkinnedLayer, SkinnedParts,
 };
+use crate::latent::TrainingStatistics;
 use crate::metadata::{FORMAT_VERSION, Metadata, Normalisation, TOOL_VERSION, topology_hash};
 use crate::model::{Model, ModelParts};
 use crate::weights::{Encoder3dWeights, LinearWeights, MlpWeights};
@@ -97,8 +99,24 @@ pub(crate) fn model(kind: Kind) -> Model {
         encoder3d,
         head,
         final_layer,
+        statistics: (kind == Kind::Rotations).then(|| statistics(&mut numbers)),
     };
     Model::new(parts).expect("the synthetic parts fit together")
+}
+
+/// Statistics that stretch nothing and hold every latent near.
+fn statistics(numbers: &mut Numbers) -> TrainingStatistics {
+    let (_, triangles) = torus();
+    let mut statistics = TrainingStatistics {
+        mean: (0..LATENT).map(|_| 0.1 * numbers.next()).collect(),
+        whitening: (0..LATENT)
+            .flat_map(|row| (0..=row).map(move |column| if row == column { 1.0 } else { 0.1 }))
+            .collect(),
+        far: 2.0,
+        longest_edges_m: unique_edges(&triangles).iter().map(|_| 50.0).collect(),
+    };
+    statistics.round_to_half();
+    statistics
 }
 
 fn final_layer(kind: Kind, len: usize, vertex_count: usize, numbers: &mut Numbers) -> FinalLayer {

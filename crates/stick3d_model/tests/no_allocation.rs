@@ -1,11 +1,12 @@
-//! A frame allocates nothing: sketch to latent, latent to mesh and normals, latent to joints.
+//! A frame allocates nothing: sketch to latent, latent to mesh and normals, latent to joints, a motion's time to latent.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use glam::Vec3;
 use stick3d_figure::sketch::Sketch;
-use stick3d_model::{Inference, Model};
+use stick3d_model::latent::{Easing, MotionSettings};
+use stick3d_model::{Inference, LatentKey, Model, Motion};
 
 thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
@@ -44,6 +45,14 @@ fn a_frame_allocates_nothing() {
     let mut normals = positions.clone();
     let mut joints = vec![Vec3::ZERO; model.figure().joint_count()];
 
+    inference.encode(&sketch, &mut latent).unwrap();
+    let keys = [0.0_f32, 1.0].map(|time_s| LatentKey {
+        latent: latent.iter().map(|x| x * (1.0 - 0.3 * time_s)).collect(),
+        time_s,
+        easing: Easing::InOut,
+    });
+    let motion = Motion::new(&keys, MotionSettings::default(), &mut inference).unwrap();
+
     let before = ALLOCATIONS.with(Cell::get);
     for _ in 0..3 {
         inference.encode(&sketch, &mut latent).unwrap();
@@ -51,6 +60,12 @@ fn a_frame_allocates_nothing() {
             .decode(&latent, &mut positions, &mut normals)
             .unwrap();
         inference.joints(&latent, &mut joints).unwrap();
+    }
+    for frame in 0..40 {
+        let time_s = 0.1 * frame as f32 - 1.0;
+        motion.sample_into(time_s, &mut latent).unwrap();
+        assert!(motion.root_translation(time_s).is_some() && motion.trust(time_s) > 0.0);
+        inference.trust(&latent).unwrap();
     }
     assert_eq!(ALLOCATIONS.with(Cell::get) - before, 0);
     assert!(before > 0, "the counter counts");

@@ -95,6 +95,21 @@ impl TriangleMesh {
     }
 }
 
+/// Every edge of some triangles once, the smaller vertex first, sorted. A triangle that names a vertex twice has fewer.
+#[must_use]
+pub fn unique_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    let of_triangle = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
+    let mut edges: Vec<[u32; 2]> = triangles
+        .iter()
+        .flat_map(of_triangle)
+        .filter(|[a, b]| a != b)
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
 fn check_triangles(triangles: &[[u32; 3]], vertex_count: usize) -> Result<(), MeshError> {
     for (triangle, corners) in triangles.iter().enumerate() {
         if let Some(&vertex) = corners.iter().find(|v| **v as usize >= vertex_count) {
@@ -159,6 +174,15 @@ mod tests {
             "{}",
             torus.volume()
         );
+    }
+
+    #[test]
+    fn every_edge_comes_once() {
+        let mesh = samples::torus(8, 6);
+        let edges = unique_edges(&mesh.triangles);
+        assert_eq!(edges.len(), mesh.edge_report().edges);
+        assert!(edges.is_sorted() && edges.iter().all(|[a, b]| a < b));
+        assert_eq!(unique_edges(&[[3, 3, 1]]), [[1, 3]]);
     }
 
     #[test]

@@ -12,6 +12,7 @@ use crate::digest::hex;
 use crate::final_layer::{
     BasisLayer, DenseLayer, FinalLayer, Rotations, SkinnedLayer, SkinnedParts,
 };
+use crate::latent::TrainingStatistics;
 use crate::metadata::{FORMAT_VERSION, Metadata};
 use crate::model::ModelParts;
 use crate::weights::{Encoder3dWeights, LinearWeights, MlpWeights};
@@ -267,6 +268,20 @@ impl Arrays<'_> {
         Ok(JointRegressor { rows })
     }
 
+    /// Models had none at first; programs of that time do not look for the arrays.
+    fn statistics(&self) -> Result<Option<TrainingStatistics>, ModelError> {
+        if !self.has("statistics.mean") {
+            return Ok(None);
+        }
+        let (_, far) = self.f32("statistics.far", 1)?;
+        Ok(Some(TrainingStatistics {
+            mean: self.f32("statistics.mean", 1)?.1,
+            whitening: self.half("statistics.whitening", 1)?.1,
+            far: far.first().copied().unwrap_or(f32::NAN),
+            longest_edges_m: self.half("statistics.longest_edges", 1)?.1,
+        }))
+    }
+
     fn parts(&self, metadata: Metadata) -> Result<ModelParts, ModelError> {
         let input_len = metadata.figure.input_len();
         let sizes =
@@ -288,6 +303,7 @@ impl Arrays<'_> {
             },
             head: self.mlp("head", layers(&sizes.head), sizes.relu_after_head)?,
             final_layer: self.final_layer()?,
+            statistics: self.statistics()?,
             metadata,
         })
     }

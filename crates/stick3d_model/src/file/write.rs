@@ -10,6 +10,7 @@ use sha2::Digest as _;
 use super::{ENTRY, ModelError, add_to_checksum, checksum_of_metadata};
 use crate::digest::hex;
 use crate::final_layer::FinalLayer;
+use crate::latent::TrainingStatistics;
 use crate::model::ModelParts;
 use crate::weights::{LinearWeights, MlpWeights};
 
@@ -119,6 +120,23 @@ impl Arrays {
         }
     }
 
+    fn put_statistics(&mut self, statistics: &TrainingStatistics) {
+        let TrainingStatistics {
+            mean,
+            whitening,
+            far,
+            longest_edges_m,
+        } = statistics;
+        self.put_f32("statistics.mean", &[mean.len()], mean);
+        self.put_half("statistics.whitening", &[whitening.len()], whitening);
+        self.put_f32("statistics.far", &[1], &[*far]);
+        self.put_half(
+            "statistics.longest_edges",
+            &[longest_edges_m.len()],
+            longest_edges_m,
+        );
+    }
+
     fn put_mesh(&mut self, parts: &ModelParts) {
         self.put_u32(
             "mesh.triangles",
@@ -154,6 +172,9 @@ pub(crate) fn write(parts: &ModelParts) -> Result<Vec<u8>, ModelError> {
     arrays.put_linear("encoder3d.log_variance", &parts.encoder3d.log_variance);
     arrays.put_mlp("head", &parts.head);
     arrays.put_final_layer(&parts.final_layer);
+    if let Some(statistics) = &parts.statistics {
+        arrays.put_statistics(statistics);
+    }
 
     let failed = |error: &dyn std::fmt::Display| ModelError::Write(error.to_string());
     let body = serde_json::to_string(&parts.metadata).map_err(|e| failed(&e))?;

@@ -4,6 +4,7 @@ mod basis;
 mod dense;
 mod rotations;
 mod skinned;
+mod subset;
 
 pub use basis::BasisLayer;
 pub use dense::DenseLayer;

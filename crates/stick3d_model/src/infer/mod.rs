@@ -9,6 +9,7 @@ use thiserror::Error;
 use crate::file::ModelError;
 use crate::final_layer::{FinalLayer, FinalScratch};
 use crate::kernels;
+use crate::latent::{LongestEdges, Probe, Trust};
 use crate::model::Model;
 use crate::weights::MlpWeights;
 
@@ -52,6 +53,7 @@ pub struct Inference {
     final_scratch: FinalScratch,
     adjacency: NormalAdjacency,
     joints: JointMap,
+    probe: Probe,
     latent_len: usize,
     input: Vec<f32>,
 }
@@ -91,6 +93,7 @@ impl Inference {
             encoder2d: Perceptron::new(model.encoder2d()),
             head: Perceptron::new(model.head()),
             joints: JointMap::new(model),
+            probe: Probe::new(model)?,
             final_layer,
             final_scratch,
             adjacency,
@@ -207,6 +210,45 @@ impl Inference {
             }
         }
         Ok(())
+    }
+
+    /// How far a latent is to be trusted to be a body. Looks at some of the mesh's edges; see
+    /// [`Trust`].
+    ///
+    /// # Errors
+    /// [`InferError::Length`], [`InferError::NotFinite`].
+    pub fn trust(&mut self, latent: &[f32]) -> Result<Trust, InferError> {
+        self.trust_beside(latent, None)
+    }
+
+    /// [`Inference::trust`] where edges may be as long as `longest` says.
+    pub(crate) fn trust_beside(
+        &mut self,
+        latent: &[f32],
+        longest: Option<&LongestEdges>,
+    ) -> Result<Trust, InferError> {
+        let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
+        Ok(self.probe.trust(latent, coefficients, longest))
+    }
+
+    /// How long edges may be beside some bodies: as long as trained or drawn.
+    pub(crate) fn longest_edges<'a>(
+        &mut self,
+        latents: impl Iterator<Item = &'a [f32]>,
+    ) -> Result<LongestEdges, InferError> {
+        let mut longest = self.probe.longest_edges();
+        for latent in latents {
+            let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
+            self.probe.allow(coefficients, &mut longest);
+        }
+        Ok(longest)
+    }
+
+    /// The height of about the lowest point of a latent's mesh, metres: of the lowest of its soles and of some thousand other vertices.
+    pub(crate) fn lowest_m(&mut self, latent: &[f32]) -> Result<f32, InferError> {
+        let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
+        let heights = self.probe.decode(coefficients).iter().map(|p| p[1]);
+        Ok(heights.fold(f32::INFINITY, f32::min))
     }
 }
 

@@ -10,16 +10,22 @@
 
 mod baseline;
 mod metrics;
+mod motion;
 mod report;
 
 pub use baseline::Baseline;
 pub use metrics::{Collector, Metrics, procrustes_mean_distance};
+pub use motion::{
+    BetweenReport, BeyondReport, GaitReport, MotionEvalConfig, MotionEvalInput, MotionReport,
+    MotionTestSet, TrueMotion, evaluate_motion, held_out_motions,
+};
 pub use report::{Drawn, Report, TestSet};
 
 use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 use stick3d_figure::figure::Figure;
 use stick3d_figure::sketch::{Sketch, SketchError};
+use stick3d_model::latent::PathError;
 use stick3d_model::{InferError, Inference, Model, ModelError};
 use thiserror::Error;
 
@@ -76,6 +82,12 @@ pub enum EvalError {
     /// The baseline has no meshes.
     #[error("there are no library poses for the nearest-neighbour baseline; give at least one")]
     NoLibrary,
+    /// The keys of a motion are no path.
+    #[error(transparent)]
+    Path(#[from] PathError),
+    /// A motion has fewer than two keys.
+    #[error("a motion to be measured has fewer than two keys; give it two")]
+    NoMotions,
 }
 
 /// The four ways in which every test case is drawn.

@@ -9,6 +9,7 @@ use stick3d_model::{Model, ModelParts};
 use super::losses::CodeScale;
 use super::networks::NetworkWeights;
 use super::run::{Run, TrainInput};
+use super::statistics::statistics;
 use super::{TrainConfig, TrainError};
 
 /// The model: normalisation folded into the networks, weights rounded as the file stores them.
@@ -53,7 +54,7 @@ pub(super) fn model(
         metrics: serde_json::json!({ "basis_fit": run.basis_fit }),
         held_out_poses: input.held_out_poses.clone(),
     };
-    Ok(Model::new(ModelParts {
+    let mut parts = ModelParts {
         metadata,
         triangles: rig.mesh.triangles.clone(),
         colors: rig.colors.clone(),
@@ -62,7 +63,15 @@ pub(super) fn model(
         encoder3d,
         head,
         final_layer: run.basis.layer().clone(),
-    })?)
+        statistics: None,
+    };
+    parts.statistics = Some(statistics(
+        &parts,
+        &run.bodies,
+        config.rotations,
+        config.seed,
+    )?);
+    Ok(Model::new(parts)?)
 }
 
 /// Makes a layer that wrote normalised codes write codes as they are.

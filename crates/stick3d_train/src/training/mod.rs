@@ -20,6 +20,7 @@ mod networks;
 mod plot;
 mod progress;
 mod run;
+mod statistics;
 
 pub use config::{HiddenLayers, LossWeights, StageConfig, TrainConfig};
 pub use error::TrainError;

@@ -88,7 +88,7 @@ pub(super) struct Run<'r, 'a> {
     pub(super) scale: CodeScale,
     pub(super) extent_m: f32,
     pub(super) data_hash: String,
-    bodies: BodySet,
+    pub(super) bodies: BodySet,
     losses: Losses,
     /// Tells checkpoints of this run from others: hash of configuration and data.
     identity: String,

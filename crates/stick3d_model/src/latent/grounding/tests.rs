@@ -1,0 +1,259 @@
+//! Feet that are down stay where they are.
+
+use super::*;
+use crate::Model;
+use crate::latent::{Easing, Interpolation, LatentKey, Motion, MotionSettings, Repeat};
+
+/// A body of height 1 whose feet are where they are told to be.
+fn step(feet: [[f32; 3]; 2]) -> Step {
+    let feet: Vec<Vec3> = feet.map(Vec3::from).to_vec();
+    let lowest_m = feet.iter().map(|foot| foot.y).fold(f32::INFINITY, f32::min);
+    Step { feet, lowest_m }
+}
+
+fn stance() -> Stance {
+    Stance {
+        rest_m: vec![0.0; 2],
+        height_m: 1.0,
+    }
+}
+
+/// A walk on the spot: each foot goes back on the ground for half a second, then swings forward.
+fn walk(time_s: f32) -> Step {
+    let foot = |phase: f32| {
+        let phase = phase.rem_euclid(1.0);
+        if phase < 0.5 {
+            [0.2 - 0.8 * phase, -0.9, 0.1]
+        } else {
+            let swing = 2.0 * (phase - 0.5);
+            let lift = 0.1 * (std::f32::consts::PI * swing).sin();
+            [-0.2 + 0.4 * swing, -0.9 + lift, 0.1]
+        }
+    };
+    step([foot(time_s), foot(time_s + 0.5)])
+}
+
+#[test]
+fn a_walk_goes_forward_on_planted_feet() {
+    let times_s: Vec<f32> = (0..=80).map(|i| i as f32 / 40.0).collect();
+    let steps: Vec<Step> = times_s.iter().map(|t| walk(*t)).collect();
+    // Keys every quarter of a second.
+    let intervals: Vec<Interval> = (0..8)
+        .map(|i| Interval {
+            first_step: 10 * i,
+            last_step: 10 * i + 10,
+            keys: [10 * i, 10 * i + 10],
+        })
+        .collect();
+    let velocities = horizontal_velocities(&steps, &times_s, &intervals, &stance());
+    for (index, velocity) in velocities.iter().enumerate() {
+        assert!(
+            (velocity.x - 0.8).abs() < 0.02 && velocity.y.abs() < 1e-6,
+            "{velocity} in step {index}"
+        );
+    }
+    let track = GroundTrack::new(times_s, &steps, &velocities, 0.0);
+    assert!(
+        (track.per_round.x - 1.6).abs() < 0.03,
+        "{}",
+        track.per_round
+    );
+    assert!(
+        track
+            .translation(0.0, 2.0)
+            .distance(Vec3::new(3.2, 0.9, 0.0))
+            < 0.06
+    );
+    // The planted foot does not move.
+    let foot = |time_s: f32| walk(time_s).feet[0] + track.translation(time_s, 0.0);
+    for i in 0..40 {
+        let time_s = 0.012 * i as f32;
+        assert!(
+            foot(time_s).distance(foot(0.0)) < 2e-3,
+            "{} at {time_s}",
+            foot(time_s)
+        );
+    }
+}
+
+#[test]
+fn a_body_in_flight_keeps_its_speed() {
+    let speeds = [
+        Some(Vec2::X),
+        Some(Vec2::X),
+        None,
+        None,
+        None,
+        Some(3.0 * Vec2::X),
+    ];
+    let filled = fill_flights(&speeds);
+    assert_eq!(filled[3], 2.0 * Vec2::X);
+    assert!(filled.windows(2).all(|pair| pair[1].x >= pair[0].x));
+    assert_eq!(fill_flights(&[None, None]), [Vec2::ZERO; 2]);
+    assert_eq!(fill_flights(&[None, Some(Vec2::Y)]), [Vec2::Y; 2]);
+}
+
+#[test]
+fn feet_that_slip_against_each_other_do_not_both_hold() {
+    // Both feet on the ground, changing places.
+    let swap = |t: f32| {
+        step([
+            [0.2 - 0.4 * t, 0.01 * t * (1.0 - t), 0.0],
+            [-0.2 + 0.4 * t, 0.0, 0.0],
+        ])
+    };
+    let steps: Vec<Step> = (0..=10).map(|i| swap(0.1 * i as f32)).collect();
+    let interval = Interval {
+        first_step: 0,
+        last_step: 10,
+        keys: [0, 10],
+    };
+    assert_eq!(planted_feet(&steps, interval, &stance()), [1]);
+}
+
+#[test]
+fn the_human_stands_on_its_feet() {
+    let human = Figure::human();
+    let names: Vec<&str> = feet(human)
+        .iter()
+        .map(|j| human.joints[*j].name.as_str())
+        .collect();
+    assert_eq!(names, ["foot_r", "foot_l"]);
+}
+
+/// The man, walking: sketches of one step from the side, and the same with sides exchanged.
+fn walking_man() -> (Inference, Motion) {
+    let bytes = include_bytes!("../../../../../assets/models/human.stick3d");
+    let mut man = Inference::new(&Model::from_bytes(bytes).unwrap()).unwrap();
+    let human = Figure::human().clone();
+    // He walks to the right: joints in the order of the figure's file, metres.
+    let contact = [
+        (0.07, 1.68),
+        (0.03, 1.48),
+        (0.0, 0.93),
+        (-0.16, 1.20),
+        (-0.12, 0.92),
+        (0.22, 0.50),
+        (0.42, 0.10),
+        (0.16, 1.19),
+        (0.36, 1.02),
+        (-0.02, 0.49),
+        (-0.34, 0.16),
+    ];
+    let passing = [
+        (0.07, 1.72),
+        (0.03, 1.52),
+        (0.0, 0.97),
+        (0.02, 1.22),
+        (0.12, 0.95),
+        (0.04, 0.52),
+        (0.02, 0.06),
+        (0.02, 1.22),
+        (0.12, 0.95),
+        (0.17, 0.58),
+        (-0.08, 0.27),
+    ];
+    let exchanged = |points: [(f32, f32); 11]| -> [(f32, f32); 11] {
+        std::array::from_fn(|joint| points[human.mirror_of(joint)])
+    };
+    let poses = [contact, passing, exchanged(contact), exchanged(passing)];
+    let keys: Vec<LatentKey> = poses
+        .into_iter()
+        .enumerate()
+        .map(|(index, points)| {
+            let points = points.map(Vec2::from).to_vec();
+            let mut latent = vec![0.0; man.latent_len()];
+            man.encode(&Sketch::new(&human, points).unwrap(), &mut latent)
+                .unwrap();
+            LatentKey {
+                latent,
+                time_s: 0.25 * index as f32,
+                easing: Easing::Linear,
+            }
+        })
+        .collect();
+    let settings = MotionSettings {
+        interpolation: Interpolation::Cubic,
+        repeat: Repeat::Loop { closing_s: None },
+        ..MotionSettings::default()
+    };
+    let motion = Motion::new(&keys, settings, &mut man).unwrap();
+    (man, motion)
+}
+
+#[test]
+fn the_man_walks_forward_without_a_jump() {
+    let (mut man, motion) = walking_man();
+    let per_round = motion.root_translation(1.0).unwrap() - motion.root_translation(0.0).unwrap();
+    // Two steps of some 70 cm, about straight ahead.
+    assert!((0.9..1.9).contains(&per_round.x), "{per_round}");
+    assert!(
+        per_round.y.abs() < 1e-3 && per_round.z.abs() < 0.3,
+        "{per_round}"
+    );
+    let far = motion.root_translation(10.0).unwrap() - motion.root_translation(9.0).unwrap();
+    assert!(
+        far.distance(per_round) < 1e-2,
+        "every round comes as far: {far} {per_round}"
+    );
+    let mut latent = vec![0.0; man.latent_len()];
+    let mut positions = vec![[0.0; 3]; man.vertex_count()];
+    let mut before = None::<Vec3>;
+    for frame in 0..120 {
+        let time_s = frame as f32 / 60.0;
+        let root = motion.root_translation(time_s).unwrap();
+        if let Some(before) = before {
+            assert!(
+                root.distance(before) < 0.08,
+                "{before} {root} in frame {frame}"
+            );
+        }
+        before = Some(root);
+        motion.sample_into(time_s, &mut latent).unwrap();
+        man.decode_positions(&latent, &mut positions).unwrap();
+        let lowest = positions.iter().map(|p| p[1]).fold(f32::INFINITY, f32::min) + root.y;
+        assert!(
+            lowest.abs() < 0.01,
+            "the lowest point is at {lowest} in frame {frame}"
+        );
+    }
+}
+
+#[test]
+fn the_planted_foot_of_the_man_stays() {
+    let (mut man, motion) = walking_man();
+    let human = Figure::human();
+    let right = human.joint_index("foot_r").unwrap();
+    let mut latent = vec![0.0; man.latent_len()];
+    let mut joints = vec![Vec3::ZERO; human.joint_count()];
+    let mut foot = |time_s: f32| {
+        motion.sample_into(time_s, &mut latent).unwrap();
+        man.joints(&latent, &mut joints).unwrap();
+        joints[right] + motion.root_translation(time_s).unwrap()
+    };
+    // From the passing pose to the next contact the right foot alone carries him.
+    let mut slid = 0.0;
+    for frame in 16..28 {
+        let (a, b) = (foot(frame as f32 / 60.0), foot((frame + 1) as f32 / 60.0));
+        slid += flat(b - a).length();
+    }
+    assert!(slid < 0.03, "{slid} m");
+}
+
+#[test]
+fn a_motion_can_be_without_ground() {
+    let (mut man, motion) = walking_man();
+    let keys: Vec<LatentKey> = (0..2)
+        .map(|key| LatentKey {
+            latent: motion.path().key_latent(key).unwrap().to_vec(),
+            time_s: key as f32,
+            easing: Easing::Linear,
+        })
+        .collect();
+    let settings = MotionSettings {
+        grounded: false,
+        ..MotionSettings::default()
+    };
+    let motion = Motion::new(&keys, settings, &mut man).unwrap();
+    assert_eq!(motion.root_translation(0.5), None);
+}
