@@ -28,9 +28,12 @@ pub(crate) enum Command {
         after_help = "Example:\n  stick3d pose --sketch assets/sketches/walk.json --out walk.glb"
     )]
     Pose(PoseArguments),
-    /// Trains a model from a rig and a pose library
+    /// Trains a model from a rig and a pose library, or from registered meshes
     #[command(
-        after_help = "Example, the shipped model:\n  stick3d train --out assets/models/human.stick3d"
+        after_help = "Example, the shipped model:\n  stick3d train --out assets/models/human.stick3d\n\n\
+                      Example, meshes without a rig:\n  \
+                      stick3d figure init --mesh scape/mesh000.ply --preset scape --out scape.ron\n  \
+                      stick3d train --meshes scape --figure scape.ron --out scape.stick3d"
     )]
     Train(TrainArguments),
     /// Measures a model on poses it never saw
@@ -79,7 +82,38 @@ pub(crate) struct BodyFiles {
     pub(crate) poses: PathBuf,
 }
 
+/// Registered meshes instead of a rigged body.
 #[derive(Debug, Args)]
+pub(crate) struct MeshFiles {
+    /// A folder of registered meshes instead of a rig: OFF, PLY or OBJ, vertex by vertex the same points
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["rig", "controls", "poses"])]
+    pub(crate) meshes: Option<PathBuf>,
+    /// File name of the mesh that gives triangles, size and heading; the first without it
+    #[arg(long, value_name = "NAME", requires = "meshes")]
+    pub(crate) pilot: Option<String>,
+    /// Leaves meshes with another vertex count out, and lists them
+    #[arg(long, requires = "meshes")]
+    pub(crate) skip_mismatched: bool,
+    /// Which axis of the meshes points up
+    #[arg(long, value_enum, default_value_t, requires = "meshes")]
+    pub(crate) up: Up,
+    /// Metres of one unit of the meshes; guessed from the figure without it
+    #[arg(long, value_name = "METRES", requires = "meshes")]
+    pub(crate) scale: Option<f32>,
+}
+
+/// An axis that points up.
+#[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
+pub(crate) enum Up {
+    /// As in glTF
+    #[default]
+    Y,
+    /// As in many scanners' files
+    Z,
+}
+
+#[derive(Debug, Args)]
+#[command(mut_arg("meshes", |meshes| meshes.requires("figure")))]
 pub(crate) struct TrainArguments {
     /// Where to write the model
     #[arg(long, value_name = "FILE")]
@@ -87,6 +121,9 @@ pub(crate) struct TrainArguments {
     /// The body and its poses
     #[command(flatten)]
     pub(crate) body: BodyFiles,
+    /// Or meshes
+    #[command(flatten)]
+    pub(crate) set: MeshFiles,
     /// The figure file; the built-in human without it
     #[arg(long, value_name = "FILE")]
     pub(crate) figure: Option<PathBuf>,
@@ -105,6 +142,7 @@ pub(crate) struct TrainArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(mut_arg("meshes", |meshes| meshes.requires("model")))]
 pub(crate) struct EvalArguments {
     /// The model file; the embedded human without it
     #[arg(long, value_name = "FILE")]
@@ -113,8 +151,11 @@ pub(crate) struct EvalArguments {
     #[command(flatten)]
     pub(crate) body: BodyFiles,
     /// Measures motions between and beyond sketched keys instead of single poses
-    #[arg(long)]
+    #[arg(long, conflicts_with = "meshes")]
     pub(crate) motion: bool,
+    /// Or the meshes that the model was trained on
+    #[command(flatten)]
+    pub(crate) set: MeshFiles,
     /// Prints the whole report as JSON instead of a table
     #[arg(long)]
     pub(crate) json: bool,

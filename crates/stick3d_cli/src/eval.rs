@@ -12,7 +12,7 @@ use crate::args::EvalArguments;
 use crate::corpus::Corpus;
 use crate::failure::{Failure, Outcome};
 use crate::progress::Bar;
-use crate::{eval_motion, inputs};
+use crate::{eval_motion, inputs, mesh_set};
 
 /// Poses of the nearest-neighbour baseline: as many as the paper's data set has (section 4.1).
 const BASELINE_POSES: usize = 72;
@@ -23,14 +23,19 @@ const TEST_STREAM: u64 = 0x7e57;
 /// Runs `stick3d eval`.
 pub(crate) fn run(arguments: &EvalArguments) -> Outcome {
     let model = inputs::model(arguments.model.as_deref())?;
-    let corpus = Corpus::read(&arguments.body)?;
     let bar = Bar::new();
-    if arguments.motion {
-        let report = eval_motion::measure(&model, &corpus, &bar)?;
-        bar.clear();
-        return print(&report, arguments.json, eval_motion::table);
-    }
-    let report = measure(&model, &corpus, &EvalConfig::default(), &bar)?;
+    let report = match &arguments.set.meshes {
+        Some(folder) => mesh_set::measure_folder(&model, folder, &arguments.set, &bar)?,
+        None => {
+            let corpus = Corpus::read(&arguments.body)?;
+            if arguments.motion {
+                let report = eval_motion::measure(&model, &corpus, &bar)?;
+                bar.clear();
+                return print(&report, arguments.json, eval_motion::table);
+            }
+            measure(&model, &corpus, &EvalConfig::default(), &bar)?
+        }
+    };
     bar.clear();
     print(&report, arguments.json, table)
 }

@@ -12,6 +12,7 @@ mod eval;
 mod eval_motion;
 mod failure;
 mod inputs;
+mod mesh_set;
 mod pose;
 mod progress;
 mod train;

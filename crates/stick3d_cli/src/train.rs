@@ -6,13 +6,13 @@ use anyhow::Context as _;
 use stick3d_figure::figure::Figure;
 use stick3d_model::Model;
 use stick3d_train::evaluate::{EvalConfig, Report};
-use stick3d_train::training::{self, TrainConfig, TrainInput};
+use stick3d_train::training::{self, TrainConfig, TrainInput, Trained};
 
 use crate::args::TrainArguments;
 use crate::corpus::Corpus;
 use crate::failure::{Failure, Outcome};
 use crate::progress::Bar;
-use crate::{eval, inputs};
+use crate::{eval, inputs, mesh_set};
 
 /// What `--quick` divides bodies and epochs by.
 const QUICK: usize = 10;
@@ -26,6 +26,9 @@ pub(crate) fn run(arguments: &TrainArguments) -> Outcome {
         })?,
         None => Figure::human().clone(),
     };
+    if let Some(folder) = &arguments.set.meshes {
+        return mesh_set::train(arguments, folder, &figure);
+    }
     let corpus = Corpus::read(&arguments.body)?;
     let config = config(arguments);
     let (trained_on, held_out) = corpus.split(config.seed);
@@ -41,9 +44,7 @@ pub(crate) fn run(arguments: &TrainArguments) -> Outcome {
             .map(|pose| pose.name.clone())
             .collect(),
     };
-    std::fs::create_dir_all(&arguments.work_dir)
-        .with_context(|| format!("cannot make the folder {}", arguments.work_dir.display()))
-        .map_err(Failure::output)?;
+    make_work_folder(arguments)?;
     let bar = Bar::new();
     let trained = training::train(
         &input,
@@ -53,19 +54,44 @@ pub(crate) fn run(arguments: &TrainArguments) -> Outcome {
         &bar,
     )
     .map_err(anyhow::Error::from)?;
+    finish(arguments, &trained, &bar, |model| {
+        eval::measure(model, &corpus, &EvalConfig::default(), &bar)
+    })?;
+    say_when(arguments, start);
+    Ok(())
+}
+
+/// Makes the folder for checkpoints and logs.
+pub(crate) fn make_work_folder(arguments: &TrainArguments) -> Outcome {
+    std::fs::create_dir_all(&arguments.work_dir)
+        .with_context(|| format!("cannot make the folder {}", arguments.work_dir.display()))
+        .map_err(Failure::output)
+}
+
+/// Measures a trained model, writes it and prints the table.
+pub(crate) fn finish(
+    arguments: &TrainArguments,
+    trained: &Trained,
+    bar: &Bar,
+    measure: impl FnOnce(&Model) -> Outcome<Report>,
+) -> Outcome {
     let model = as_stored(&trained.model)?;
-    let report = eval::measure(&model, &corpus, &EvalConfig::default(), &bar)?;
+    let report = measure(&model)?;
     bar.clear();
     with_metrics(model, &report)?
         .save(&arguments.out)
         .map_err(Failure::output)?;
     println!("{}", eval::table(&report));
+    Ok(())
+}
+
+/// Says where the model is and how long it took.
+pub(crate) fn say_when(arguments: &TrainArguments, start: Instant) {
     println!(
         "{} in {:.0} s",
         arguments.out.display(),
         start.elapsed().as_secs_f64()
     );
-    Ok(())
 }
 
 /// The model as it comes back from its file, where numbers are rounded: what is measured is what ships.
@@ -88,9 +114,14 @@ fn with_metrics(model: Model, report: &Report) -> Outcome<Model> {
 }
 
 fn config(arguments: &TrainArguments) -> TrainConfig {
+    quicker(arguments, TrainConfig::human())
+}
+
+/// A recipe with the seed and the haste that were asked for.
+pub(crate) fn quicker(arguments: &TrainArguments, recipe: TrainConfig) -> TrainConfig {
     let mut config = TrainConfig {
         seed: arguments.seed,
-        ..TrainConfig::human()
+        ..recipe
     };
     if arguments.quick {
         config.sampled_bodies /= QUICK;

@@ -12,9 +12,30 @@ pub fn srgb_byte(linear: f32) -> u8 {
     (255.0 * encoded).round() as u8
 }
 
+/// The other way: an sRGB brightness between 0 and 1 as a linear byte, 255 = 1, as glTF's vertex colours hold it.
+#[must_use]
+pub fn linear_byte(srgb: f32) -> u8 {
+    let x = srgb.clamp(0.0, 1.0);
+    let linear = if x <= 0.040_45 {
+        x / 12.92
+    } else {
+        ((x + 0.055) / 1.055).powf(2.4)
+    };
+    (255.0 * linear).round() as u8
+}
+
 #[cfg(test)]
 mod tests {
-    use super::srgb_byte;
+    use super::{linear_byte, srgb_byte};
+
+    #[test]
+    fn the_ways_are_inverse_to_each_other() {
+        // Dark linear bytes are farther apart on the screen than its own bytes are.
+        for byte in 0..=255_u8 {
+            let there = srgb_byte(f32::from(byte) / 255.0);
+            assert_eq!(linear_byte(f32::from(there) / 255.0), byte);
+        }
+    }
 
     #[test]
     fn the_curve_is_the_standards() {

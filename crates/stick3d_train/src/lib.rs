@@ -6,6 +6,8 @@
 pub mod bake;
 pub mod dataset;
 pub mod evaluate;
+pub mod format;
+pub mod meshes;
 pub mod pose;
 pub mod render;
 pub mod rig;

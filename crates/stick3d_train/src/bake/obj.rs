@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use crate::format::{Fault, Record, each_record};
+
 /// The vertices and the named groups of quads of an OBJ file.
 pub(super) struct Obj {
     /// The vertices, in the file's unit.
@@ -13,45 +15,27 @@ pub(super) struct Obj {
 }
 
 impl Obj {
-    /// Parses the text; lines other than `v`, `g` and `f` do not matter here.
+    /// Parses the text.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let mut obj = Self {
             positions: Vec::new(),
             groups: BTreeMap::new(),
         };
         let mut group = String::new();
-        for (number, line) in (1..).zip(text.lines()) {
-            let mut words = line.split_whitespace();
-            let fault = |what: &str| format!("line {number}: {what}");
-            match words.next() {
-                Some("v") => {
-                    let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
-                    let point: [f64; 3] = numbers
-                        .try_into()
-                        .map_err(|_| fault("a vertex needs three numbers"))?;
-                    obj.positions.push(point.into());
-                }
-                Some("g") => words.next().unwrap_or_default().clone_into(&mut group),
-                Some("f") => {
-                    let corners: Vec<u32> = words
-                        .filter_map(|word| {
-                            word.split('/').next()?.parse::<u32>().ok()?.checked_sub(1)
-                        })
-                        .collect();
-                    let quad: [u32; 4] = corners
-                        .try_into()
-                        .map_err(|_| fault("a face needs four vertices"))?;
-                    if quad
-                        .iter()
-                        .any(|&corner| corner as usize >= obj.positions.len())
-                    {
-                        return Err(fault("a face uses a vertex that does not exist"));
-                    }
+        each_record(text, |record| {
+            match record {
+                Record::Vertex(at, _) => obj.positions.push(at.into()),
+                Record::Group(name) => name.clone_into(&mut group),
+                Record::Face(corners) => {
+                    let quad = corners.try_into().map_err(|_| {
+                        Fault::Unsupported(format!("a face of {} corners", corners.len()))
+                    })?;
                     obj.groups.entry(group.clone()).or_default().push(quad);
                 }
-                _ => {}
             }
-        }
+            Ok(())
+        })
+        .map_err(|error| error.to_string())?;
         Ok(obj)
     }
 
@@ -111,7 +95,7 @@ mod tests {
         assert!(
             Obj::parse(&missing)
                 .err()
-                .is_some_and(|what| what.contains("does not exist"))
+                .is_some_and(|what| what.contains("vertex 5"))
         );
     }
 }

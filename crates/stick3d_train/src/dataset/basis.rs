@@ -16,7 +16,7 @@ use stick3d_model::final_layer::{
     FinalLayer, FinalLayerError, Rotations, SkinnedLayer, SkinnedParts,
 };
 
-use super::{InfluenceTable, posed, rounded};
+use super::{BasisFit, InfluenceTable, Shape, posed};
 use crate::rig::{Pose, Rig};
 
 /// How a basis is made.
@@ -46,24 +46,9 @@ pub enum BasisError {
 /// A final layer that turns rotations into vertices, and how to find a pose's numbers for it.
 #[derive(Debug, Clone)]
 pub struct SkinBasis {
-    layer: FinalLayer,
+    shape: Shape,
     rotations: Rotations,
     rig_bones: Vec<usize>,
-    /// `[vertex][feature column]`.
-    matrix: Vec<f32>,
-    /// `[joint][feature column]`: the joints as linear functions of the features.
-    joint_rows: Vec<f32>,
-}
-
-/// How well a basis holds meshes: distances between their vertices and their images, metres.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct BasisFit {
-    /// Mean over all vertices.
-    pub mean_m: f64,
-    /// 99 of 100 vertices are closer.
-    pub p99_m: f64,
-    /// The farthest vertex.
-    pub max_m: f64,
 }
 
 impl SkinBasis {
@@ -107,30 +92,17 @@ impl SkinBasis {
         let expansion = expansion.as_slice().iter().map(|x| *x as f32).collect();
         let parts = parts(rig, &table, expansion, Some(rotations.clone()));
         let layer = FinalLayer::Skinned(SkinnedLayer::new(parts)?);
-        let matrix = layer.matrix().unwrap_or_default();
-        let columns = layer.matrix_columns();
-        let joint_row = |row: &Vec<(u32, f32)>| -> Vec<f32> {
-            let entry = |j: usize| {
-                row.iter()
-                    .map(|&(v, w)| w * matrix[v as usize * columns + j])
-                    .sum()
-            };
-            (0..columns).map(entry).collect()
-        };
-        let joint_rows = regressor.rows.iter().flat_map(joint_row).collect();
         Ok(Self {
-            layer,
+            shape: Shape::new(layer, regressor),
             rotations,
             rig_bones: table.rig_bones,
-            matrix,
-            joint_rows,
         })
     }
 
-    /// The final layer that turns codes into vertices.
+    /// What codes stand for.
     #[must_use]
-    pub fn layer(&self) -> &FinalLayer {
-        &self.layer
+    pub fn shape(&self) -> &Shape {
+        &self.shape
     }
 
     /// Which rotations a code consists of.
@@ -139,47 +111,11 @@ impl SkinBasis {
         &self.rotations
     }
 
-    /// How many vectors a code has.
-    #[must_use]
-    pub fn code_columns(&self) -> usize {
-        self.rotations.code_columns()
-    }
-
-    /// `[vertex][feature column]`: the vertices as linear functions of the features.
-    #[must_use]
-    pub fn matrix(&self) -> &[f32] {
-        &self.matrix
-    }
-
-    /// `[joint][feature column]`: the joints as linear functions of the features.
-    #[must_use]
-    pub fn joint_rows(&self) -> &[f32] {
-        &self.joint_rows
-    }
-
     /// The numbers `[3][code_columns]` of a pose: what the networks encode and decode.
     #[must_use]
     pub fn code(&self, rig: &Rig, pose: &Pose) -> Vec<f32> {
         self.rotations
             .code(&bone_matrices(rig, &self.rig_bones, pose))
-    }
-
-    /// The joints of a code, metres, the root joint at the origin.
-    #[must_use]
-    pub fn joints(&self, code: &[f32]) -> Vec<Vec3> {
-        let columns = self.rotations.feature_columns();
-        let mut features = vec![0.0; 3 * columns];
-        self.rotations.expand(code, &mut features);
-        let joint = |row: &[f32]| {
-            let along = |axis: usize| -> f32 {
-                row.iter()
-                    .zip(&features[axis * columns..])
-                    .map(|(a, b)| a * b)
-                    .sum()
-            };
-            Vec3::new(along(0), along(1), along(2))
-        };
-        self.joint_rows.chunks_exact(columns).map(joint).collect()
     }
 
     /// How far posed meshes are from their images.
@@ -191,28 +127,11 @@ impl SkinBasis {
         root: usize,
         poses: &[Pose],
     ) -> BasisFit {
-        let mut scratch = self.layer.scratch();
-        let mut image = vec![[0.0; 3]; self.layer.vertex_count()];
-        let (mut mesh, mut distances) = (vec![], vec![]);
-        for pose in poses {
+        self.shape.measure(poses.iter().map(|pose| {
+            let mut mesh = vec![];
             posed(rig, regressor, root, pose, &mut mesh);
-            self.layer
-                .evaluate(&self.code(rig, pose), &mut scratch, &mut image);
-            distances.extend(
-                mesh.iter()
-                    .zip(&image)
-                    .map(|(a, b)| a.distance(Vec3::from(*b))),
-            );
-        }
-        distances.sort_by(f32::total_cmp);
-        let last = distances.len().saturating_sub(1);
-        let at = |i: usize| distances.get(i).copied().map_or(0.0, f64::from);
-        let sum: f64 = distances.iter().copied().map(f64::from).sum();
-        BasisFit {
-            mean_m: rounded(sum / distances.len().max(1) as f64),
-            p99_m: rounded(at(last * 99 / 100)),
-            max_m: rounded(at(last)),
-        }
+            (mesh, self.code(rig, pose))
+        }))
     }
 }
 

@@ -13,7 +13,7 @@ use super::{Augmentation, BodySet, Rotations, normal_pair, random};
 pub struct Batch {
     /// How many.
     pub len: usize,
-    /// `[len][3][code_columns]`: see [`SkinBasis::code`](super::SkinBasis::code).
+    /// `[len][3][code_columns]`: see [`Shape`](super::Shape).
     pub codes: Vec<f32>,
     /// `[len][input_len]`: input vectors of the sketches.
     pub inputs: Vec<f32>,

@@ -6,7 +6,7 @@ use sha2::Digest as _;
 use stick3d_figure::regressor::JointRegressor;
 use stick3d_model::digest::hex;
 
-use super::SkinBasis;
+use super::{Shape, SkinBasis};
 use crate::rig::{Pose, Rig};
 
 /// An endless source of poses.
@@ -22,7 +22,7 @@ const STREAMS: usize = 16;
 /// Posed bodies, centred on the root joint, not turned.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BodySet {
-    /// `[body][3][code_columns]`: see [`SkinBasis::code`].
+    /// `[body][3][code_columns]`: see [`Shape`].
     pub codes: Vec<f32>,
     /// `[body][joint]`, metres.
     pub joints: Vec<Vec3>,
@@ -61,12 +61,36 @@ impl BodySet {
         let mut set = Self::default();
         for pose in poses {
             let code = basis.code(rig, &pose);
-            set.joints.extend(basis.joints(&code));
-            set.codes.extend(code);
-            set.len += 1;
+            set.push(basis.shape(), code);
             done(1);
         }
         set
+    }
+
+    /// The bodies of given meshes, centred on the root joint, in a shape that is linear in its codes. Calls `done(1)`
+    /// after each.
+    ///
+    /// # Panics
+    /// When a mesh has another number of vertices than the shape.
+    pub fn from_meshes<'m>(
+        shape: &Shape,
+        meshes: impl IntoIterator<Item = &'m [Vec3]>,
+        done: &(dyn Fn(usize) + Sync),
+    ) -> Self {
+        let mut set = Self::default();
+        for mesh in meshes {
+            if let Some(code) = shape.layer().project(mesh) {
+                set.push(shape, code);
+            }
+            done(1);
+        }
+        set
+    }
+
+    fn push(&mut self, shape: &Shape, code: Vec<f32>) {
+        self.joints.extend(shape.joints(&code));
+        self.codes.extend(code);
+        self.len += 1;
     }
 
     /// Adds the bodies of another set.
@@ -112,6 +136,11 @@ pub(crate) fn posed(
     positions: &mut Vec<Vec3>,
 ) -> Vec<Vec3> {
     rig.skin(pose, positions);
+    centre(regressor, root, positions)
+}
+
+/// Moves a mesh so that joint `root` is at the origin, and returns the joints.
+pub(crate) fn centre(regressor: &JointRegressor, root: usize, positions: &mut [Vec3]) -> Vec<Vec3> {
     let mut joints = regressor.joints(positions);
     let centre = joints[root];
     positions

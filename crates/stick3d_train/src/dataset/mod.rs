@@ -1,25 +1,30 @@
 //! Training pairs: posed bodies and the sketches of them.
 //!
-//! Nothing in training touches 3N numbers. A body is its *code*, two columns of every bone's rotation, in a
-//! [basis](SkinBasis) that gives vertices and joints for them; turning the body turns the code. So a [`BodySet`] is
-//! small, and [batches](Batcher) with ever new rotations and sketches are made while training.
+//! Nothing in training touches 3N numbers. A body is its *code*: two columns of every bone's rotation in a
+//! [skin](SkinBasis), or coefficients of [principal components](principal_shape). Its [`Shape`] gives vertices and joints
+//! for the code; turning the body turns the code. So a [`BodySet`] is small, and [batches](Batcher) with ever new rotations
+//! and sketches are made while training.
 
 mod augment;
 mod basis;
 mod batch;
 mod bodies;
 mod influences;
+mod principal;
 mod rotation;
+mod shape;
 
 pub use augment::{Augmentation, SketchNoise};
-pub use basis::{BasisConfig, BasisError, BasisFit, SkinBasis};
+pub use basis::{BasisConfig, BasisError, SkinBasis};
 pub(crate) use batch::drawn;
 pub use batch::{Batch, Batcher};
-pub(crate) use bodies::posed;
 pub use bodies::{BodySet, PoseStream, PoseStreams};
+pub(crate) use bodies::{centre, posed};
 pub use influences::InfluenceTable;
+pub use principal::principal_shape;
 pub(crate) use rotation::turn_coefficients;
 pub use rotation::{Rotations, rotation};
+pub use shape::{BasisFit, Shape};
 
 use rand::Rng;
 use rand::SeedableRng as _;

@@ -51,7 +51,7 @@ fn poses(rig: &Rig, seed: u64) -> impl Iterator<Item = Pose> {
 }
 
 fn image(code: &[f32]) -> Vec<Vec3> {
-    let layer = SCENE.basis.layer();
+    let layer = SCENE.basis.shape().layer();
     let mut positions = vec![[0.0; 3]; layer.vertex_count()];
     layer.evaluate(code, &mut layer.scratch(), &mut positions);
     positions.into_iter().map(Vec3::from).collect()
@@ -93,7 +93,7 @@ fn turning_the_code_turns_the_mesh_and_the_root_joint_stays() {
             "{:?}",
             joints[Figure::human().root]
         );
-        for (a, b) in joints.iter().zip(basis.joints(&code)) {
+        for (a, b) in joints.iter().zip(basis.shape().joints(&code)) {
             assert!(a.distance(b) < 1e-4);
         }
     }
@@ -104,7 +104,7 @@ fn between_two_poses_limbs_keep_their_length() {
     let Scene { rig, basis, .. } = &*SCENE;
     let figure = Figure::human();
     let length = |code: &[f32], from: &str, to: &str| {
-        let joints = basis.joints(code);
+        let joints = basis.shape().joints(code);
         let index = |name| figure.joint_index(name).unwrap();
         joints[index(from)].distance(joints[index(to)])
     };
@@ -179,7 +179,7 @@ fn batches_are_turned_bodies_with_their_sketches() {
     assert_ne!(batch, batcher.batch(5, 1, &order).unwrap());
 
     // The sketch of a clean batch is the projection of the very mesh that its coefficients stand for.
-    let width = 3 * basis.code_columns();
+    let width = 3 * basis.shape().code_columns();
     for slot in 0..batch.len {
         let joints = regressor.joints(&image(&batch.codes[slot * width..][..width]));
         let points = joints.iter().map(|joint| joint.truncate()).collect();

@@ -2,12 +2,10 @@
 
 use glam::{Quat, Vec3};
 use stick3d_figure::figure::Figure;
-use stick3d_figure::regressor::JointRegressor;
 use stick3d_figure::sketch::Sketch;
 
 use super::EvalError;
-use crate::dataset::{Rotations, drawn, posed};
-use crate::rig::{Pose, Rig};
+use crate::dataset::{Rotations, drawn};
 
 /// Meshes in the paper's 21 turns, found by their sketches' input vectors.
 #[derive(Debug, Clone)]
@@ -19,28 +17,24 @@ pub struct Baseline {
 }
 
 impl Baseline {
-    /// The baseline over `poses` in the paper's turns.
+    /// The baseline over bodies, each its vertices and joints, in the paper's turns.
     ///
     /// # Errors
-    /// [`EvalError::NoLibrary`] without poses, [`EvalError::Sketch`] when one cannot be drawn.
+    /// [`EvalError::NoLibrary`] without bodies, [`EvalError::Sketch`] when one cannot be drawn.
     pub fn new(
         figure: &Figure,
-        rig: &Rig,
-        regressor: &JointRegressor,
-        poses: &[Pose],
+        bodies: impl IntoIterator<Item = (Vec<Vec3>, Vec<Vec3>)>,
     ) -> Result<Self, EvalError> {
-        if poses.is_empty() {
-            return Err(EvalError::NoLibrary);
-        }
         let turns = Rotations::paper_list();
         let (mut meshes, mut inputs) = (vec![], vec![]);
-        for pose in poses {
-            let mut mesh = vec![];
-            let joints = posed(rig, regressor, figure.root, pose, &mut mesh);
+        for (mesh, joints) in bodies {
             meshes.push(mesh);
             for turn in &turns {
                 inputs.push(Sketch::new(figure, drawn(*turn, &joints))?.input_vector(figure)?);
             }
+        }
+        if meshes.is_empty() {
+            return Err(EvalError::NoLibrary);
         }
         Ok(Self {
             meshes,

@@ -1,7 +1,7 @@
 //! Measuring a model on poses it never saw.
 //!
-//! Test cases are poses from the sampler with a seed of its own, and the library poses that training left out, each turned
-//! at random ([`Rotations::TEST`](crate::dataset::Rotations::TEST)). Each is drawn four times: as it is, with joints
+//! Test cases are poses from the sampler with a seed of its own, and the library poses (or the registered meshes) that
+//! training left out, each turned at random ([`Rotations::TEST`](crate::dataset::Rotations::TEST)). Each is drawn four times: as it is, with joints
 //! jittered, with bones scaled, with both ([`SketchNoise`]).
 //!
 //! Meshes are compared centred on the figure's root joint, without aligning rotation or scale. Only PA-MPJPE
@@ -26,10 +26,12 @@ use serde::{Deserialize, Serialize};
 use stick3d_figure::figure::Figure;
 use stick3d_figure::sketch::{Sketch, SketchError};
 use stick3d_model::latent::PathError;
+use stick3d_model::metadata::topology_hash;
 use stick3d_model::{InferError, Inference, Model, ModelError};
 use thiserror::Error;
 
-use crate::dataset::{PoseStream, Rotations, SketchNoise, drawn, posed, random};
+use crate::dataset::{PoseStream, Rotations, SketchNoise, centre, drawn, posed, random};
+use crate::meshes::{MeshSet, NamedMesh};
 use crate::rig::{Pose, Rig};
 use crate::training::Progress;
 
@@ -88,6 +90,14 @@ pub enum EvalError {
     /// A motion has fewer than two keys.
     #[error("a motion to be measured has fewer than two keys; give it two")]
     NoMotions,
+    /// No mesh of the set was kept from the model.
+    #[error(
+        "the set has none of the meshes that the model did not learn from ({names}); name the folder it was trained on"
+    )]
+    NoHeldOut {
+        /// The meshes that were kept from it.
+        names: String,
+    },
 }
 
 /// The four ways in which every test case is drawn.
@@ -126,34 +136,100 @@ pub fn evaluate(
     config: &EvalConfig,
     progress: &dyn Progress,
 ) -> Result<Report, EvalError> {
-    let rig = input.rig;
-    model.require_topology(&stick3d_model::metadata::topology_hash(
-        rig.mesh.positions.len(),
-        &rig.mesh.triangles,
-    ))?;
+    let (rig, regressor, root) = (input.rig, model.regressor(), model.figure().root);
+    let vertex_count = rig.mesh.positions.len();
+    model.require_topology(&topology_hash(vertex_count, &rig.mesh.triangles))?;
+    let body = |pose: &Pose| -> Body {
+        let mut mesh = vec![];
+        let joints = posed(rig, regressor, root, pose, &mut mesh);
+        (mesh, joints)
+    };
+    let sampled = input.stream.take(config.sampled_poses);
+    let cases = Cases {
+        sampled: config.sampled_poses,
+        library: input.held_out.len(),
+        baseline: &mut input.library.iter().map(body),
+        bodies: &mut sampled.map(|pose| (Source::Sampler, body(&pose))).chain(
+            input
+                .held_out
+                .iter()
+                .map(|pose| (Source::Library, body(pose))),
+        ),
+    };
+    measure(model, cases, config, progress)
+}
+
+/// Measures a model of registered meshes: on those of `set` that it did not learn from, beside the baseline among the
+/// others.
+///
+/// # Errors
+/// [`EvalError`]; [`EvalError::NoHeldOut`] when the set has none of the meshes kept from the model.
+pub fn evaluate_meshes(
+    model: &Model,
+    set: &MeshSet,
+    config: &EvalConfig,
+    progress: &dyn Progress,
+) -> Result<Report, EvalError> {
+    model.require_topology(&topology_hash(set.vertex_count(), &set.triangles))?;
+    let (trained, held_out) = set.split_by(&model.metadata().held_out_poses);
+    if held_out.is_empty() {
+        return Err(EvalError::NoHeldOut {
+            names: model.metadata().held_out_poses.join(", "),
+        });
+    }
+    let body = |mesh: &&NamedMesh| -> Body {
+        let mut mesh = mesh.positions.clone();
+        let joints = centre(model.regressor(), model.figure().root, &mut mesh);
+        (mesh, joints)
+    };
+    let cases = Cases {
+        sampled: 0,
+        library: held_out.len(),
+        baseline: &mut trained.iter().map(body),
+        bodies: &mut held_out.iter().map(|mesh| (Source::Library, body(mesh))),
+    };
+    measure(model, cases, config, progress)
+}
+
+/// A mesh centred on the root joint, and its joints.
+type Body = (Vec<Vec3>, Vec<Vec3>);
+
+/// What to measure on.
+struct Cases<'c> {
+    sampled: usize,
+    library: usize,
+    baseline: &'c mut dyn Iterator<Item = Body>,
+    bodies: &'c mut dyn Iterator<Item = (Source, Body)>,
+}
+
+fn measure(
+    model: &Model,
+    cases: Cases<'_>,
+    config: &EvalConfig,
+    progress: &dyn Progress,
+) -> Result<Report, EvalError> {
     let mut evaluation = Evaluation {
         figure: model.figure(),
-        baseline: Baseline::new(model.figure(), rig, model.regressor(), input.library)?,
+        baseline: Baseline::new(model.figure(), cases.baseline)?,
         inference: Inference::new(model)?,
         config,
         model,
-        rig,
         rng_step: 0,
         collectors: DRAWN.iter().map(|_| Collectors::default()).collect(),
     };
-    let library_cases = input.held_out.len() * config.turns_per_library_pose;
-    progress.begin("measuring", config.sampled_poses + library_cases);
-    for pose in input.stream.take(config.sampled_poses) {
-        evaluation.case(&pose, Source::Sampler)?;
-        progress.advance(1);
-    }
-    for pose in input.held_out {
-        for _ in 0..config.turns_per_library_pose {
-            evaluation.case(pose, Source::Library)?;
+    let library_cases = cases.library * config.turns_per_library_pose;
+    progress.begin("measuring", cases.sampled + library_cases);
+    for (source, body) in cases.bodies {
+        let turns = match source {
+            Source::Sampler => 1,
+            Source::Library => config.turns_per_library_pose,
+        };
+        for _ in 0..turns {
+            evaluation.case(&body, source)?;
             progress.advance(1);
         }
     }
-    Ok(evaluation.report(library_cases))
+    Ok(evaluation.report(cases.sampled, library_cases))
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -172,7 +248,6 @@ struct Collectors {
 struct Evaluation<'a> {
     figure: &'a Figure,
     model: &'a Model,
-    rig: &'a Rig,
     inference: Inference,
     baseline: Baseline,
     config: &'a EvalConfig,
@@ -181,22 +256,14 @@ struct Evaluation<'a> {
 }
 
 impl Evaluation<'_> {
-    /// Turns a pose, draws it four ways, and compares what comes of it.
-    fn case(&mut self, pose: &Pose, source: Source) -> Result<(), EvalError> {
+    /// Turns a body, draws it four ways, and compares what comes of it.
+    fn case(&mut self, (mesh, joints): &Body, source: Source) -> Result<(), EvalError> {
         let figure = self.figure;
         let mut rng = random(self.config.seed, "evaluation", self.rng_step);
         self.rng_step += 1;
         let turn = Rotations::TEST.sample(&mut rng);
-        let mut truth = vec![];
-        let rest_joints = posed(
-            self.rig,
-            self.model.regressor(),
-            figure.root,
-            pose,
-            &mut truth,
-        );
-        truth.iter_mut().for_each(|point| *point = turn * *point);
-        let joints: Vec<Vec3> = rest_joints.iter().map(|joint| turn * *joint).collect();
+        let truth: Vec<Vec3> = mesh.iter().map(|point| turn * *point).collect();
+        let joints: Vec<Vec3> = joints.iter().map(|joint| turn * *joint).collect();
         let mut latent = vec![0.0; self.inference.latent_len()];
         let mut positions = vec![[0.0; 3]; truth.len()];
         for (index, (_, noise)) in DRAWN.iter().enumerate() {
@@ -224,7 +291,7 @@ impl Evaluation<'_> {
         Ok(())
     }
 
-    fn report(self, library_cases: usize) -> Report {
+    fn report(self, sampled_cases: usize, library_cases: usize) -> Report {
         let extent_m = self.model.metadata().normalisation.extent_m;
         let (mut model, mut baseline) = (vec![], vec![]);
         for ((name, noise), collectors) in DRAWN.iter().zip(self.collectors) {
@@ -233,7 +300,7 @@ impl Evaluation<'_> {
         }
         let test = TestSet {
             seed: self.config.seed,
-            sampled_cases: self.config.sampled_poses,
+            sampled_cases,
             library_cases,
             baseline_meshes: self.baseline.len(),
         };

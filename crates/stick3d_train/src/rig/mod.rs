@@ -20,6 +20,7 @@ mod write;
 
 pub use error::RigError;
 use glam::Vec3;
+pub(crate) use regressor::mean_of;
 pub use regressor::regressor;
 pub use skeleton::{Bone, Pose, Skeleton};
 pub use skinning::Skinning;

@@ -36,7 +36,7 @@ pub fn regressor(figure: &Figure, rig: &Rig) -> Result<JointRegressor, RigError>
         .iter()
         .map(|joint| {
             let row = match &joint.anchor {
-                Anchor::Vertices(vertices) => mean_of(vertices, rig),
+                Anchor::Vertices(vertices) => mean_of(vertices, rig.mesh.positions.len()),
                 Anchor::Bones(names) => {
                     let bones = names
                         .iter()
@@ -54,8 +54,8 @@ pub fn regressor(figure: &Figure, rig: &Rig) -> Result<JointRegressor, RigError>
     Ok(JointRegressor { rows })
 }
 
-fn mean_of(vertices: &[u32], rig: &Rig) -> Result<Vec<(u32, f32)>, String> {
-    let count = rig.mesh.positions.len();
+/// The plain mean of some of `count` vertices.
+pub(crate) fn mean_of(vertices: &[u32], count: usize) -> Result<Vec<(u32, f32)>, String> {
     match vertices.iter().find(|&&vertex| vertex as usize >= count) {
         Some(vertex) => Err(format!("vertex {vertex} is past the last one, {count}")),
         None if vertices.is_empty() => Err("its list of vertices is empty".into()),

@@ -18,6 +18,9 @@ pub struct TrainConfig {
     pub latent_len: usize,
     /// The basis of the meshes.
     pub basis: BasisConfig,
+    /// At most how many principal components of the meshes stand in for that basis; figures without a rig need them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub principal_components: Option<usize>,
     /// Bodies drawn from the pose streams.
     pub sampled_bodies: usize,
     /// How often every library pose (and its mirror image) is in the set.
@@ -96,6 +99,7 @@ impl TrainConfig {
                 helpers: 32,
                 poses: 2000,
             },
+            principal_components: None,
             sampled_bodies: 40_000,
             library_repeats: 10,
             rotations: Rotations::SHIPPED,
@@ -131,6 +135,20 @@ impl TrainConfig {
                 probes: 300,
             },
             checkpoint_every: 2,
+        }
+    }
+
+    /// A recipe for `count` registered meshes: as the human's, on principal components, with every mesh so often in an
+    /// epoch, each time turned otherwise, that the steps are about a third of the human's.
+    #[must_use]
+    pub fn meshes(count: usize, vertex_count: usize) -> Self {
+        const BODIES: usize = 16_000;
+        const BASIS_BYTES: usize = 16_000_000;
+        Self {
+            principal_components: Some((BASIS_BYTES / 4 / vertex_count.max(1)).clamp(8, 256)),
+            sampled_bodies: 0,
+            library_repeats: BODIES.div_ceil(count.max(1)),
+            ..Self::human()
         }
     }
 

@@ -7,6 +7,7 @@ use stick3d_model::ModelError;
 use thiserror::Error;
 
 use crate::dataset::BasisError;
+use crate::meshes::MeshSetError;
 use crate::rig::RigError;
 
 /// Why training did not end with a model.
@@ -19,6 +20,9 @@ pub enum TrainError {
     /// The rig does not fit the figure.
     #[error(transparent)]
     Rig(#[from] RigError),
+    /// The mesh set does not fit the figure.
+    #[error(transparent)]
+    Meshes(#[from] MeshSetError),
     /// The meshes have no basis.
     #[error(transparent)]
     Basis(#[from] BasisError),

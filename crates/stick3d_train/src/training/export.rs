@@ -8,15 +8,14 @@ use stick3d_model::{Model, ModelParts};
 
 use super::losses::CodeScale;
 use super::networks::NetworkWeights;
-use super::run::{Run, TrainInput};
+use super::run::Run;
 use super::statistics::statistics;
 use super::{TrainConfig, TrainError};
 
 /// The model: normalisation folded into the networks, weights rounded as the file stores them.
 pub(super) fn model(
-    input: &TrainInput<'_>,
     config: &TrainConfig,
-    run: &Run<'_, '_>,
+    run: &Run<'_>,
     weights: NetworkWeights,
 ) -> Result<Model, TrainError> {
     let NetworkWeights {
@@ -33,41 +32,42 @@ pub(super) fn model(
     encoder3d.round_to_half();
     head.round_to_half();
     encoder2d.round_to_half();
-    let rig = input.rig;
-    let vertex_count = rig.mesh.positions.len();
+    let material = &run.material;
+    let figure = material.figure;
+    let vertex_count = material.shape.layer().vertex_count();
     let metadata = Metadata {
         format_version: FORMAT_VERSION,
         tool_version: TOOL_VERSION.to_owned(),
-        figure: input.figure.clone(),
-        architecture: config.architecture(run.basis.code_columns()),
+        figure: figure.clone(),
+        architecture: config.architecture(material.shape.code_columns()),
         latent_len: config.latent_len,
         vertex_count,
-        topology_hash: topology_hash(vertex_count, &rig.mesh.triangles),
+        topology_hash: topology_hash(vertex_count, material.triangles),
         normalisation: Normalisation {
             input: "offsets along the sketch path, divided by their root mean square length"
                 .to_owned(),
-            extent_m: run.extent_m,
-            centre_joint: input.figure.joints[input.figure.root].name.clone(),
+            extent_m: material.extent_m,
+            centre_joint: figure.joints[figure.root].name.clone(),
         },
         recipe: serde_json::to_value(config).map_err(|e| TrainError::Config(e.to_string()))?,
         data_hash: run.data_hash.clone(),
-        metrics: serde_json::json!({ "basis_fit": run.basis_fit }),
-        held_out_poses: input.held_out_poses.clone(),
+        metrics: serde_json::json!({ "basis_fit": material.basis_fit }),
+        held_out_poses: material.held_out.to_vec(),
     };
     let mut parts = ModelParts {
         metadata,
-        triangles: rig.mesh.triangles.clone(),
-        colors: rig.colors.clone(),
-        regressor: run.regressor.clone(),
+        triangles: material.triangles.to_vec(),
+        colors: material.colors.to_vec(),
+        regressor: material.regressor.clone(),
         encoder2d,
         encoder3d,
         head,
-        final_layer: run.basis.layer().clone(),
+        final_layer: material.shape.layer().clone(),
         statistics: None,
     };
     parts.statistics = Some(statistics(
         &parts,
-        &run.bodies,
+        &material.bodies,
         config.rotations,
         config.seed,
     )?);

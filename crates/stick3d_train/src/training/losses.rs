@@ -6,7 +6,7 @@ use stick3d_model::network::{reparameterize, rotation_features};
 
 use super::networks::{Autoencoder, Networks};
 use super::{LossWeights, TrainError};
-use crate::dataset::{Batch, SkinBasis};
+use crate::dataset::{Batch, Shape};
 
 /// Keeps the square root of a vanishing distance differentiable, square metres (a tenth of a millimetre, squared).
 const SMALLEST_SQUARE_M2: f64 = 1e-8;
@@ -27,8 +27,8 @@ pub(crate) struct Losses {
     extent_m: f64,
     mean: Tensor<2>,
     scale: f64,
-    turning_bones: usize,
-    halves: Vec<usize>,
+    /// How many bones the codes turn, and the pairs that share a half-way rotation; `None` where codes are features.
+    turning: Option<(usize, Vec<usize>)>,
     /// `[features, probes + joints + bones]`: some vertices, the joints, and the differences between the ends of the
     /// figure's bones.
     points: Tensor<2>,
@@ -62,14 +62,14 @@ pub(crate) type Terms = Vec<(&'static str, Tensor<1>)>;
 impl Losses {
     pub(crate) fn new(
         figure: &Figure,
-        basis: &SkinBasis,
+        shape: &Shape,
         scale: &CodeScale,
         extent_m: f32,
         weights: LossWeights,
         device: &Device,
     ) -> Self {
-        let columns = basis.rotations().feature_columns();
-        let (matrix, joint_rows) = (basis.matrix(), basis.joint_rows());
+        let columns = shape.feature_columns();
+        let (matrix, joint_rows) = (shape.matrix(), shape.joint_rows());
         let vertices = matrix.len() / columns;
         let probes = weights.probes.clamp(1, vertices);
         let mut rows: Vec<f32> = vec![];
@@ -82,17 +82,20 @@ impl Losses {
                 (0..columns).map(|j| joint_rows[b * columns + j] - joint_rows[a * columns + j]),
             );
         }
-        let shape = [rows.len() / columns, columns];
+        let size = [rows.len() / columns, columns];
         let mean = TensorData::new(scale.mean.clone(), [1, scale.mean.len()]);
-        let halves = basis.rotations().halves.as_flattened();
+        let turning = shape.rotations().map(|rotations| {
+            let halves = rotations.halves.as_flattened();
+            let halves = halves.iter().map(|bone| usize::from(*bone)).collect();
+            (rotations.bone_count, halves)
+        });
         Self {
             weights,
             extent_m: f64::from(extent_m),
             mean: Tensor::from_data(mean, device),
             scale: f64::from(scale.scale),
-            turning_bones: basis.rotations().bone_count,
-            halves: halves.iter().map(|bone| usize::from(*bone)).collect(),
-            points: Tensor::<2>::from_data(TensorData::new(rows, shape), device).transpose(),
+            turning,
+            points: Tensor::<2>::from_data(TensorData::new(rows, size), device).transpose(),
             probes,
             joints: figure.joint_count(),
         }
@@ -100,9 +103,12 @@ impl Losses {
 
     /// Where normalised codes put the points.
     pub(crate) fn points(&self, codes: Tensor<2>) -> Points {
-        let [batch, _] = codes.dims();
+        let [batch, len] = codes.dims();
         let raw = codes * self.scale + self.mean.clone();
-        let features = rotation_features(raw, self.turning_bones, &self.halves);
+        let features = match &self.turning {
+            Some((bones, halves)) => rotation_features(raw, *bones, halves),
+            None => raw.reshape([3 * batch, len / 3]),
+        };
         let [_, count] = self.points.dims();
         let all = features
             .matmul(self.points.clone())

@@ -5,7 +5,7 @@
 //!    the frozen Decoder makes of its guess.
 //! 3. *Joint*: all three together.
 //!
-//! [`train`] runs them. It can be stopped at any time and resumed from the checkpoint in its run folder: all random
+//! [`train`] runs them on a rigged body, [`train_meshes`] on registered meshes. It can be stopped at any time and resumed from the checkpoint in its run folder: all random
 //! numbers depend on the seed and the step alone, so the result is the same to the last bit.
 
 mod adam;
@@ -16,6 +16,7 @@ mod export;
 mod init;
 mod log;
 mod losses;
+mod material;
 mod networks;
 mod plot;
 mod progress;
@@ -25,8 +26,9 @@ mod statistics;
 pub use config::{HiddenLayers, LossWeights, StageConfig, TrainConfig};
 pub use error::TrainError;
 pub use log::{LossLog, LossRecord};
+pub use material::{MeshTrainInput, TrainInput};
 pub use progress::{Progress, Quiet, StageName};
-pub use run::{TrainInput, Trained, train};
+pub use run::{Trained, train, train_meshes};
 
 #[cfg(test)]
 mod tests;

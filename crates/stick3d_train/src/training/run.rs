@@ -1,12 +1,9 @@
-//! One training run from rig and poses to a model.
+//! One training run from bodies to a model.
 
 use std::path::Path;
 
 use burn::optim::GradientsParams;
 use burn::tensor::{Device, Tensor};
-use rayon::prelude::*;
-use stick3d_figure::figure::Figure;
-use stick3d_figure::regressor::JointRegressor;
 use stick3d_model::Model;
 use stick3d_model::digest::sha256_hex;
 
@@ -16,24 +13,10 @@ use super::export;
 use super::init::initial_weights;
 use super::log::{LossLog, LossRecord};
 use super::losses::{CodeScale, Losses, Tensors, Terms, values};
+use super::material::{Material, MeshTrainInput, TrainInput};
 use super::networks::{NetworkWeights, Networks};
 use super::{Progress, StageConfig, StageName, TrainConfig, TrainError, plot};
-use crate::dataset::{BasisFit, Batcher, BodySet, PoseStreams, SkinBasis, random, rounded};
-use crate::rig::{Pose, Rig, regressor};
-
-/// What a run learns from.
-pub struct TrainInput<'a> {
-    /// What is drawn.
-    pub figure: &'a Figure,
-    /// The body.
-    pub rig: &'a Rig,
-    /// Poses of the library, mirror images included.
-    pub library: &'a [Pose],
-    /// Sampled poses.
-    pub streams: &'a PoseStreams<'a>,
-    /// Names of library poses that are not among them; kept in the model for its evaluation.
-    pub held_out_poses: Vec<String>,
-}
+use crate::dataset::{BasisFit, Batcher, BodySet, random, rounded};
 
 /// What a run yields.
 #[derive(Debug, Clone)]
@@ -46,10 +29,7 @@ pub struct Trained {
     pub basis_fit: BasisFit,
 }
 
-/// Streams from this number on make the meshes that the basis comes from; bodies come from lower ones.
-const BASIS_STREAM: u64 = 1 << 32;
-
-/// Trains a model. With a `run_folder` it leaves there, as it goes, `checkpoint.safetensors`, `losses.csv` and
+/// Trains a model of a rigged body. With a `run_folder` it leaves there, as it goes, `checkpoint.safetensors`, `losses.csv` and
 /// `losses.png`; with `resume` it goes on from that checkpoint if there is one.
 ///
 /// # Errors
@@ -61,7 +41,35 @@ pub fn train(
     resume: bool,
     progress: &dyn Progress,
 ) -> Result<Trained, TrainError> {
-    let run = Run::prepare(input, config, progress)?;
+    config.validate()?;
+    let material = Material::of_rig(input, config, progress)?;
+    run(material, config, run_folder, resume, progress)
+}
+
+/// Trains a model of registered meshes, on their principal components; otherwise as [`train`].
+///
+/// # Errors
+/// [`TrainError`]; a checkpoint written before stays usable.
+pub fn train_meshes(
+    input: &MeshTrainInput<'_>,
+    config: &TrainConfig,
+    run_folder: Option<&Path>,
+    resume: bool,
+    progress: &dyn Progress,
+) -> Result<Trained, TrainError> {
+    config.validate()?;
+    let material = Material::of_meshes(input, config, progress)?;
+    run(material, config, run_folder, resume, progress)
+}
+
+fn run(
+    material: Material<'_>,
+    config: &TrainConfig,
+    run_folder: Option<&Path>,
+    resume: bool,
+    progress: &dyn Progress,
+) -> Result<Trained, TrainError> {
+    let run = Run::new(material, config)?;
     let path = run_folder.map(|folder| folder.join("checkpoint.safetensors"));
     let fresh = || Checkpoint::start(run.initial_weights());
     let checkpoint = match &path {
@@ -69,96 +77,55 @@ pub fn train(
         _ => fresh(),
     };
     let (weights, log) = run.stages(checkpoint, run_folder, progress)?;
-    let model = export::model(input, config, &run, weights)?;
+    let model = export::model(config, &run, weights)?;
     Ok(Trained {
         model,
         log,
-        basis_fit: run.basis_fit,
+        basis_fit: run.material.basis_fit,
     })
 }
 
 /// Everything that stays the same over a run.
-pub(super) struct Run<'r, 'a> {
-    input: &'r TrainInput<'a>,
-    config: &'r TrainConfig,
+pub(super) struct Run<'a> {
+    config: &'a TrainConfig,
     device: Device,
-    pub(super) regressor: JointRegressor,
-    pub(super) basis: SkinBasis,
-    pub(super) basis_fit: BasisFit,
+    pub(super) material: Material<'a>,
     pub(super) scale: CodeScale,
-    pub(super) extent_m: f32,
     pub(super) data_hash: String,
-    pub(super) bodies: BodySet,
     losses: Losses,
     /// Tells checkpoints of this run from others: hash of configuration and data.
     identity: String,
 }
 
-impl<'r, 'a> Run<'r, 'a> {
-    fn prepare(
-        input: &'r TrainInput<'a>,
-        config: &'r TrainConfig,
-        progress: &dyn Progress,
-    ) -> Result<Self, TrainError> {
-        config.validate()?;
-        let TrainInput { figure, rig, .. } = *input;
-        let regressor = regressor(figure, rig)?;
-        let root = figure.root;
-
-        progress.begin("fitting the skin", config.basis.poses);
-        let sample = |count, first_stream| sample_poses(input, count, first_stream);
-        let poses = sample(config.basis.poses, BASIS_STREAM);
-        let basis = SkinBasis::fit(rig, &regressor, root, config.basis, &poses)?;
-        progress.advance(config.basis.poses);
-        let basis_fit = basis.measure(rig, &regressor, root, &sample(64, 2 * BASIS_STREAM));
-        progress.note(&format!(
-            "skin of {} bones: vertices off by {:.2} mm on average, {:.2} mm for 99 %, {:.1} mm at most",
-            basis.rotations().bone_count,
-            1e3 * basis_fit.mean_m,
-            1e3 * basis_fit.p99_m,
-            1e3 * basis_fit.max_m
-        ));
-
-        progress.begin("posing bodies", config.sampled_bodies + input.library.len());
-        let advance = |steps| progress.advance(steps);
-        let mut bodies =
-            BodySet::sample(rig, &basis, input.streams, config.sampled_bodies, &advance);
-        let library = BodySet::from_poses(rig, &basis, input.library.iter().cloned(), &advance);
-        for _ in 0..config.library_repeats {
-            bodies.extend(library.clone());
-        }
-        if bodies.len == 0 {
+impl<'a> Run<'a> {
+    fn new(material: Material<'a>, config: &'a TrainConfig) -> Result<Self, TrainError> {
+        let Material { figure, shape, .. } = &material;
+        if material.bodies.len == 0 {
             return Err(TrainError::Config(
                 "there are no bodies to train on".to_owned(),
             ));
         }
-        let scale = code_scale(&bodies, config);
-        let (low, high) = rig.mesh.bounds();
-        let extent_m = (high - low).max_element() / 2.0;
+        let scale = code_scale(&material.bodies, config);
         let device = Device::flex().autodiff();
-        let losses = Losses::new(figure, &basis, &scale, extent_m, config.loss, &device);
-        let data_hash = bodies.hash();
+        let extent_m = material.extent_m;
+        let losses = Losses::new(figure, shape, &scale, extent_m, config.loss, &device);
+        let data_hash = material.bodies.hash();
         let identity = sha256_hex(format!("{config:?} {data_hash}").as_bytes());
         Ok(Self {
-            input,
             config,
             device,
-            regressor,
-            basis,
-            basis_fit,
+            material,
             scale,
-            extent_m,
             data_hash,
-            bodies,
             losses,
             identity,
         })
     }
 
     fn initial_weights(&self) -> NetworkWeights {
-        let figure = self.input.figure;
-        let vertex_count = self.input.rig.mesh.positions.len();
-        let architecture = self.config.architecture(self.basis.code_columns());
+        let Material { figure, shape, .. } = &self.material;
+        let vertex_count = shape.layer().vertex_count();
+        let architecture = self.config.architecture(shape.code_columns());
         let sizes = architecture.sizes(figure.input_len(), self.config.latent_len, vertex_count);
         let (encoder3d, head, encoder2d) = initial_weights(&sizes, self.config.seed);
         NetworkWeights {
@@ -170,8 +137,8 @@ impl<'r, 'a> Run<'r, 'a> {
 
     fn batcher(&self) -> Batcher<'_> {
         Batcher {
-            figure: self.input.figure,
-            bodies: &self.bodies,
+            figure: self.material.figure,
+            bodies: &self.material.bodies,
             rotations: self.config.rotations,
             augmentation: self.config.augmentation,
             batch_size: self.config.batch_size,
@@ -355,20 +322,6 @@ fn schedule(step: usize, steps: usize) -> f64 {
     let warm_up = ((step + 1) as f64 / (steps as f64 / 20.0).clamp(1.0, 100.0)).min(1.0);
     let done = step as f64 / steps.max(1) as f64;
     warm_up * (0.01 + 0.99 * 0.5 * (1.0 + (std::f64::consts::PI * done).cos()))
-}
-
-/// Some poses, from several streams side by side.
-fn sample_poses(input: &TrainInput<'_>, count: usize, first_stream: u64) -> Vec<Pose> {
-    const STREAMS: usize = 16;
-    (0..STREAMS)
-        .into_par_iter()
-        .flat_map_iter(|stream| {
-            let share = count / STREAMS + usize::from(stream < count % STREAMS);
-            (input.streams)(first_stream + stream as u64)
-                .take(share)
-                .collect::<Vec<_>>()
-        })
-        .collect()
 }
 
 /// The mean of turned bodies' codes, and how far a number of a code is from it on average.
