@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use stick3d_train::landmark::Preset;
 
 const EXIT_CODES: &str = "Exit codes:
   0  done
@@ -39,6 +40,13 @@ pub(crate) enum Command {
     /// Measures a model on poses it never saw
     #[command(after_help = "Example:\n  stick3d eval --model assets/models/human.stick3d --json")]
     Eval(EvalArguments),
+    /// Makes figure files: which joints a body has and how it is drawn
+    #[command(
+        subcommand,
+        after_help = "Example:\n  \
+                      stick3d figure init --mesh scape/mesh000.ply --preset scape --out scape.ron"
+    )]
+    Figure(FigureCommand),
     /// Makes the shipped bodies and their contact sheets from the sources
     #[command(
         subcommand,
@@ -159,6 +167,35 @@ pub(crate) struct EvalArguments {
     /// Prints the whole report as JSON instead of a table
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum FigureCommand {
+    /// Writes a figure file whose joints are found on a mesh by its shape
+    Init(FigureInitArguments),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FigureInitArguments {
+    /// A mesh of the set that stands: OFF, PLY or OBJ
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mesh: PathBuf,
+    /// Which kind of body it is
+    #[arg(long, value_name = "PRESET", value_parser = preset)]
+    pub(crate) preset: Preset,
+    /// Which axis of the mesh points up
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) up: Up,
+    /// Where to write the figure
+    #[arg(long, value_name = "FILE.ron")]
+    pub(crate) out: PathBuf,
+}
+
+/// A preset by its name.
+fn preset(name: &str) -> Result<Preset, String> {
+    let known = || Preset::ALL.iter().map(|preset| preset.name());
+    let found = Preset::ALL.into_iter().find(|preset| preset.name() == name);
+    found.ok_or_else(|| format!("known presets: {}", known().collect::<Vec<_>>().join(", ")))
 }
 
 #[derive(Debug, Subcommand)]

@@ -11,6 +11,7 @@ mod corpus;
 mod eval;
 mod eval_motion;
 mod failure;
+mod figure;
 mod inputs;
 mod mesh_set;
 mod pose;
@@ -28,6 +29,7 @@ fn main() -> ExitCode {
         Command::Pose(arguments) => pose::run(&arguments),
         Command::Train(arguments) => train::run(&arguments),
         Command::Eval(arguments) => eval::run(&arguments),
+        Command::Figure(command) => figure::run(&command),
         Command::Bake(command) => bake::run(&command),
     };
     match outcome {

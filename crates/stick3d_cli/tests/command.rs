@@ -231,7 +231,7 @@ fn unwritable_outputs_end_with_5_and_leave_nothing() {
 fn usage_errors_end_with_2_and_help_shows_an_example() {
     let output = stick3d().args(["pose"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
-    for command in ["pose", "train", "eval", "bake"] {
+    for command in ["pose", "train", "eval", "figure", "bake"] {
         let output = stick3d().args([command, "--help"]).output().unwrap();
         let help = String::from_utf8(output.stdout).unwrap();
         assert!(
@@ -239,4 +239,109 @@ fn usage_errors_end_with_2_and_help_shows_an_example() {
             "{command}: {help}"
         );
     }
+}
+
+/// The error of a command line that must fail with a code and name some things.
+fn refused(code: i32, arguments: &[&str], named: &[&str]) {
+    let output = stick3d().args(arguments).output().unwrap();
+    let error = error_of(&output);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+    for part in named {
+        assert!(
+            error.contains(part),
+            "{arguments:?} lacks {part:?}: {error}"
+        );
+    }
+}
+
+#[test]
+fn meshes_and_rigs_do_not_mix() {
+    let meshes = ["train", "--out", "x.stick3d", "--meshes", "."];
+    let with = |more: &[&'static str]| [&meshes[..], more].concat();
+    refused(2, &with(&[]), &["--figure"]);
+    refused(2, &with(&["--figure", "f", "--rig", "r"]), &["--rig"]);
+    refused(
+        2,
+        &with(&["--figure", "f", "--controls", "c"]),
+        &["--controls"],
+    );
+    refused(2, &with(&["--figure", "f", "--poses", "p"]), &["--poses"]);
+    refused(
+        2,
+        &["train", "--out", "x.stick3d", "--skip-mismatched"],
+        &["--meshes"],
+    );
+    refused(
+        2,
+        &["train", "--out", "x.stick3d", "--scale", "2"],
+        &["--meshes"],
+    );
+    refused(2, &["eval", "--meshes", "."], &["--model"]);
+    let init = [
+        "figure", "init", "--mesh", "m.off", "--out", "f.ron", "--preset",
+    ];
+    refused(2, &[&init[..], &["dragon"]].concat(), &["dragon", "scape"]);
+}
+
+#[test]
+fn wrong_mesh_sets_end_with_3_and_name_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let write = |name: &str, text: &str| std::fs::write(path(name), text).unwrap();
+    let joint = |name: &str, x: f32, vertex: u32| {
+        format!(
+            "(name: {name:?}, side: Center, template: ({x:?}, 0.0), anchor: Vertices([{vertex}])),"
+        )
+    };
+    let figure = format!(
+        "Figure(name: \"rod\", root: \"a\", joints: [{}{}], path: [\"a\", \"b\"], bones: [(\"a\", \"b\")])",
+        joint("a", 0.0, 0),
+        joint("b", 1.0, 1)
+    );
+    write("rod.ron", &figure);
+    let (meshes, rod) = (folder.path().to_str().unwrap(), path("rod.ron"));
+    let (rod, work, out) = (rod.to_str().unwrap(), path("work"), path("rod.stick3d"));
+    let (work, out) = (work.to_str().unwrap(), out.to_str().unwrap());
+    let train = [
+        "train",
+        "--meshes",
+        meshes,
+        "--figure",
+        rod,
+        "--out",
+        out,
+        "--work-dir",
+        work,
+    ];
+    refused(3, &train, &["holds no mesh"]);
+    let tetrahedron =
+        "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+    write("mesh1.off", tetrahedron);
+    write("mesh2.off", tetrahedron);
+    write("mesh3.off", &tetrahedron.replace("0 0 1\n", "0 0 nan\n"));
+    refused(3, &train, &["mesh3.off, line 6", "vertex 3"]);
+    let larger = tetrahedron.replace("4 4 0\n", "5 4 0\n9 9 9\n");
+    write("mesh3.off", &larger);
+    refused(
+        3,
+        &train,
+        &["mesh3.off", "5 vertices", "4", "--skip-mismatched"],
+    );
+    let skip = [&train[..], &["--skip-mismatched"]].concat();
+    let pilot = [&skip[..], &["--pilot", "mesh9.off"]].concat();
+    refused(3, &pilot, &["mesh9.off", "did you mean"]);
+    let negative = [&skip[..], &["--scale=-1"]].concat();
+    refused(3, &negative, &["the scale is -1"]);
+    write("rod.ron", &figure.replace("[1]", "[4]"));
+    refused(3, &skip, &["joint `b`", "vertex 4"]);
+    let init = [
+        "figure", "init", "--preset", "scape", "--out", out, "--mesh",
+    ];
+    let mesh = path("mesh1.off");
+    refused(
+        3,
+        &[&init[..], &[mesh.to_str().unwrap()]].concat(),
+        &["mesh1.off"],
+    );
+    assert!(!path("rod.stick3d").exists());
 }

@@ -30,11 +30,15 @@ mod tests {
 
     #[test]
     fn the_ways_are_inverse_to_each_other() {
-        // Dark linear bytes are farther apart on the screen than its own bytes are.
+        // Bright linear bytes are closer together than the screen's are: there and back may be off by one.
         for byte in 0..=255_u8 {
             let there = srgb_byte(f32::from(byte) / 255.0);
-            assert_eq!(linear_byte(f32::from(there) / 255.0), byte);
+            assert!(
+                linear_byte(f32::from(there) / 255.0).abs_diff(byte) <= 1,
+                "{byte}"
+            );
         }
+        assert_eq!([0.0, 0.5, 1.0, 2.0].map(linear_byte), [0, 55, 255, 255]);
     }
 
     #[test]

@@ -189,7 +189,7 @@ fn what_is_wrong_is_named_with_its_place() {
             "faces are promised",
         ),
         (Off, swapped("5 5 0", "5 6 0"), "ends with 5 of 6 faces"),
-        (Off, good[..34].to_owned(), "of 5 vertices"),
+        (Off, good[..31].to_owned(), "of 5 vertices"),
         (Off, swapped("1 0 -1", "1 nan -1"), "line 4: vertex 1"),
         (Off, swapped("1 0 -1", "1 -inf -1"), "line 4: vertex 1"),
         (Off, swapped("1 0 -1", "1 1e60 -1"), "line 4: vertex 1"),
