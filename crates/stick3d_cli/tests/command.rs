@@ -287,7 +287,12 @@ fn meshes_and_rigs_do_not_mix() {
 fn wrong_mesh_sets_end_with_3_and_name_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
-    let write = |name: &str, text: &str| std::fs::write(path(name), text).unwrap();
+    let write = |name: &str, text: &str| {
+        std::fs::File::create(path(name))
+            .unwrap()
+            .write_all(text.as_bytes())
+            .unwrap();
+    };
     let joint = |name: &str, x: f32, vertex: u32| {
         format!(
             "(name: {name:?}, side: Center, template: ({x:?}, 0.0), anchor: Vertices([{vertex}])),"

@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use stick3d_figure::figure::Figure;
 use stick3d_figure::mesh::TriangleMesh;
 use stick3d_model::export::{ExportMesh, save_mesh};
+use stick3d_model::files::write_atomically;
 use stick3d_model::{Model, ModelParts};
 use stick3d_train::dataset::{BasisConfig, PoseStream};
 use stick3d_train::evaluate::{EvalConfig, EvalInput, evaluate, evaluate_meshes};
@@ -217,9 +218,9 @@ fn write_exactly(path: &Path, i: usize, positions: &[Vec3], triangles: &[[u32; 3
                 .fold(String::new(), |t, l| t + "v " + l + "\n"),
             faces("f ", 1)
         ),
-        _ => return std::fs::write(path, ply(i, positions, triangles)).unwrap(),
+        _ => return write_atomically(path, &ply(i, positions, triangles)).unwrap(),
     };
-    std::fs::write(path, text).unwrap();
+    write_atomically(path, text.as_bytes()).unwrap();
 }
 
 /// ASCII, little-endian or big-endian, in turn.

@@ -3,6 +3,7 @@
 use glam::Vec3;
 use proptest::prelude::*;
 use stick3d_model::export::{ExportMesh, MeshFormat, mesh_bytes};
+use stick3d_model::files::write_atomically;
 
 use super::*;
 
@@ -190,15 +191,15 @@ fn what_is_wrong_is_named_with_its_place() {
         ),
         (Off, swapped("5 5 0", "5 6 0"), "ends with 5 of 6 faces"),
         (Off, good[..31].to_owned(), "of 5 vertices"),
-        (Off, swapped("1 0 -1", "1 nan -1"), "line 4: vertex 1"),
-        (Off, swapped("1 0 -1", "1 -inf -1"), "line 4: vertex 1"),
-        (Off, swapped("1 0 -1", "1 1e60 -1"), "line 4: vertex 1"),
+        (Off, swapped("\n1 0 -1", "\n1 nan -1"), "line 4: vertex 1"),
+        (Off, swapped("\n1 0 -1", "\n1 -inf -1"), "line 4: vertex 1"),
+        (Off, swapped("\n1 0 -1", "\n1 1e60 -1"), "line 4: vertex 1"),
         (
             Off,
-            swapped("1 0 -1", "1 0,5 -1"),
+            swapped("\n1 0 -1", "\n1 0,5 -1"),
             "line 4: \"0,5\" is no coordinate",
         ),
-        (Off, swapped("1 0 -1", "1 0"), "line 4: a coordinate"),
+        (Off, swapped("\n1 0 -1", "\n1 0"), "line 4: a coordinate"),
         (
             Off,
             swapped("3 0 4 1", "3 0 5 1"),
@@ -250,7 +251,11 @@ fn what_is_wrong_is_named_with_its_place() {
             big("property double x", "property half x"),
             "line 6: \"half\" is no type",
         ),
-        (Ply, big("vertex 5", "vertex 6"), "line 20"),
+        (
+            Ply,
+            big("vertex 5", "vertex 6"),
+            "4 of 5 elements called face",
+        ),
         (Ply, big("-1 0 -1", "-1 nan -1"), "vertex 0"),
         (Obj, "v 1 2\n".to_owned(), "line 1: a coordinate"),
         (
@@ -291,7 +296,7 @@ fn files_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mesh7.noff");
     assert!(matches!(read_mesh(&path), Err(MeshFileError::Io { .. })));
-    std::fs::write(&path, "NOFF\n1 1\n").unwrap();
+    write_atomically(&path, b"NOFF\n1 1\n").unwrap();
     let message = read_mesh(&path).unwrap_err().to_string();
     assert!(message.contains("mesh7.noff, line 2: "), "{message}");
     let other = read_mesh(&folder.path().join("mesh7.stl")).unwrap_err();

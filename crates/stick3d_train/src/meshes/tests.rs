@@ -1,15 +1,20 @@
 //! Folders of small meshes.
 
 use stick3d_figure::figure::FigureError;
+use stick3d_model::files::write_atomically;
 
 use super::*;
+
+fn put(folder: &Path, name: &str, text: &str) {
+    write_atomically(&folder.join(name), text.as_bytes()).unwrap();
+}
 
 /// Writes an OFF file of a tetrahedron whose tip is `tip` away, with `extra` vertices that nothing uses.
 fn write(folder: &Path, name: &str, tip: f32, extra: usize) {
     let mut text = format!("OFF\n{} 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 {tip}\n", 4 + extra);
     text += &"0 0 0\n".repeat(extra);
     text += "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
-    std::fs::write(folder.join(name), text).unwrap();
+    put(folder, name, &text);
 }
 
 fn names(set: &MeshSet) -> Vec<&str> {
@@ -26,13 +31,13 @@ fn a_folder_is_read_in_the_order_of_its_numbers() {
         write(folder.path(), name, 1.0 + i as f32, 0);
     }
     // Without faces, and without being the pilot, that is no fault.
-    std::fs::write(
-        folder.path().join("mesh3.obj"),
+    put(
+        folder.path(),
+        "mesh3.obj",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 9\n",
-    )
-    .unwrap();
+    );
     for name in ["readme.txt", "._mesh1.off"] {
-        std::fs::write(folder.path().join(name), "no mesh").unwrap();
+        put(folder.path(), name, "no mesh");
     }
     let set = MeshSet::read(folder.path(), &MeshSetOptions::default()).unwrap();
     assert_eq!(
@@ -105,7 +110,7 @@ fn faults_name_the_file() {
     let message = read().unwrap_err().to_string();
     assert!(message.contains("mesh1.off, line 6: vertex 3"), "{message}");
     let points = "v 0 0 0\nv 0 0 0\nv 0 0 0\nv 0 0 0\n";
-    std::fs::write(folder.path().join("mesh1.obj"), points).unwrap();
+    put(folder.path(), "mesh1.obj", points);
     std::fs::remove_file(folder.path().join("mesh1.off")).unwrap();
     std::fs::rename(
         folder.path().join("mesh0.off"),
@@ -114,11 +119,11 @@ fn faults_name_the_file() {
     .unwrap();
     let message = read().unwrap_err().to_string();
     assert!(message.contains("mesh1.obj has no faces"), "{message}");
-    std::fs::write(
-        folder.path().join("mesh1.obj"),
-        points.to_owned() + "f 1 2 3\n",
-    )
-    .unwrap();
+    put(
+        folder.path(),
+        "mesh1.obj",
+        &(points.to_owned() + "f 1 2 3\n"),
+    );
     let message = read().unwrap_err().to_string();
     assert!(message.contains("mesh1.obj are at one place"), "{message}");
     let missing = folder.path().join("nowhere");
