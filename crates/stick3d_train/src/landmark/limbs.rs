@@ -1,10 +1,11 @@
-//! The ends of a body's limbs, and which of them are pairs: by distances along the surface alone, in any pose.
+//! The ends of a body's limbs, and which of them are pairs: by distances along the surface and by how thick the limbs are,
+//! both of which hardly change with the pose.
 
 use super::surface::Surface;
 use super::{LandmarkError, Tip};
 
 /// How much the distances of two sides may differ, as a share of the longest distance.
-const MOST_ASYMMETRY: f32 = 0.3;
+const MOST_ASYMMETRY: f32 = 0.5;
 
 /// How far a tip is at least from the others and from the body's middle, as a share of the farthest tip's way from there.
 const LEAST_WAY: f32 = 0.25;
@@ -30,6 +31,7 @@ impl Limbs {
                 distances: surface.distances(&[vertex]),
             })
             .collect();
+        let girths = girths(surface, &tips);
         let mut limbs = Self {
             middle: vec![],
             pairs: [[0; 2]; 2],
@@ -37,7 +39,14 @@ impl Limbs {
         };
         let mut best = f32::INFINITY;
         for pairs in pairings(count) {
-            let asymmetry = limbs.asymmetry(&pairs);
+            let unlike = |[a, b]: [usize; 2]| -> f32 {
+                girths[a]
+                    .iter()
+                    .zip(&girths[b])
+                    .map(|(a, b)| (a - b).abs())
+                    .sum()
+            };
+            let asymmetry = limbs.asymmetry(&pairs) + pairs.into_iter().map(unlike).sum::<f32>();
             if asymmetry < best {
                 best = asymmetry;
                 limbs.pairs = pairs;
@@ -86,6 +95,25 @@ impl Limbs {
             .sum::<f32>()
             + across
     }
+}
+
+/// The lengths of rings around every limb, from its tip on.
+fn girths(surface: &Surface<'_>, tips: &[Tip]) -> Vec<Vec<f32>> {
+    const RINGS: usize = 5;
+    let ways = tips.iter().flat_map(|tip| {
+        tips.iter()
+            .map(|other| tip.distances[other.vertex as usize])
+    });
+    let shortest = ways.filter(|way| *way > 0.0).fold(f32::INFINITY, f32::min);
+    let girths = |tip: &Tip| -> Vec<f32> {
+        // Limbs that are next to each other meet half way.
+        let levels = (1..=RINGS).map(|step| 0.4 * shortest * step as f32 / RINGS as f32);
+        let ring = |level| surface.rings(&tip.distances, level).into_iter().next();
+        levels
+            .map(|level| ring(level).map_or(0.0, |ring| ring.length))
+            .collect()
+    };
+    tips.iter().map(girths).collect()
 }
 
 /// All ways to take two pairs out of `count` things.

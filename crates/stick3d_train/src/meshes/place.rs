@@ -38,7 +38,14 @@ pub struct Placement {
     pub upright: f32,
 }
 
-/// Files whose figure is between this share and its inverse of the template's size are in metres.
+/// Metres of the units that files are in.
+const UNITS_M: [f32; 5] = [1.0, 0.1, 0.0254, 0.01, 0.001];
+
+/// A unit in which the figure is between this share and its inverse of the template's size is the file's. No two units
+/// can be.
+const LIKELY: f32 = 0.75;
+
+/// Where none is, metres may still be, with a figure that is small or large.
 const PLAUSIBLE: f32 = 0.5;
 
 /// A heading closer than this to a quarter turn is meant as one, degrees.
@@ -47,8 +54,9 @@ const SQUARE_DEG: f32 = 15.0;
 impl MeshSet {
     /// Brings all meshes to metres and to the heading of the figure's template, which is the figure at yaw 0.
     ///
-    /// The scale is `scale`, or, where none is given, 1 if the figure on the pilot is plausible in metres, else what makes
-    /// it as large as the template. The heading is the turn about +Y that brings the pilot's joints closest to the
+    /// The scale is `scale`; where none is given, that of the unit (metre, decimetre, inch, centimetre, millimetre) in
+    /// which the figure on the pilot is about as large as the template; failing that, 1 if it is between half and twice as
+    /// large, else what makes it as large. The heading is the turn about +Y that brings the pilot's joints closest to the
     /// template.
     ///
     /// # Errors
@@ -91,8 +99,10 @@ fn plausible_scale(joints: &[Vec3], template: &[Vec2]) -> Result<f32, MeshSetErr
     if !(share.is_finite() && share > 0.0) {
         return Err(MeshSetError::NoSize);
     }
-    let metres = (PLAUSIBLE..=PLAUSIBLE.recip()).contains(&share);
-    Ok(if metres { 1.0 } else { share.recip() })
+    let within = |unit: f32, least: f32| (least..=least.recip()).contains(&(unit * share));
+    let unit = UNITS_M.into_iter().find(|unit| within(*unit, LIKELY));
+    let metres = within(1.0, PLAUSIBLE).then_some(1.0);
+    Ok(unit.or(metres).unwrap_or(share.recip()))
 }
 
 /// The largest distance between two points.

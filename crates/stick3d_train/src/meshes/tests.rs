@@ -171,21 +171,32 @@ fn sets_are_brought_to_size_and_heading() {
         (set, placement)
     };
     // Plausible metres stay as they are, to the bit.
-    for unit in [0.6, 1.0, 1.7] {
+    for unit in [0.6, 1.0, 1.2, 1.9] {
         let (set, placement) = placed(unit, 0.0, None);
         assert_eq!((placement.scale, placement.yaw_deg), (1.0, 0.0));
         assert_eq!(set, beam(unit, 0.0));
         assert!((placement.upright - 1.0).abs() < 1e-5);
     }
-    for (unit, heading) in [(100.0, 90.0), (0.001, 180.0), (39.0, 8.0), (1.0, -50.0)] {
-        let (set, placement) = placed(unit, heading, None);
-        let size = set.meshes[2].positions[0].distance(set.meshes[2].positions[2]);
-        assert!((size - 2.0).abs() < 1e-3, "{size}");
-        let off = (placement.yaw_deg + heading).rem_euclid(360.0);
+    // How large the beam is in the files, how it is turned, and what a unit of the files is.
+    for (size, heading, metres) in [
+        (110.0, 90.0, 0.01),
+        (1200.0, 180.0, 0.001),
+        (39.0, 8.0, 0.0254),
+        (9.0, -50.0, 0.1),
+        (1.0, -50.0, 1.0),
+        (5.0, 0.0, 0.2),
+        (0.004, 0.0, 250.0),
+    ] {
+        let (set, placement) = placed(size, heading, None);
         assert!(
-            off.min(360.0 - off) < if heading == 8.0 { 8.1 } else { 0.1 },
-            "{off}"
+            (placement.scale / metres - 1.0).abs() < 1e-4,
+            "{placement:?}"
         );
+        let [left, right] = [0, 2].map(|end| set.meshes[2].positions[end]);
+        assert!((left.distance(right) - 2.0 * metres * size).abs() < 1e-3);
+        let off = (placement.yaw_deg + heading).rem_euclid(360.0);
+        let most = if heading == 8.0 { 8.1 } else { 0.1 };
+        assert!(off.min(360.0 - off) < most, "{off}");
     }
     let (set, _) = placed(1.0, 0.0, Some(3.0));
     assert_eq!(set.extent_m(), 3.0);
