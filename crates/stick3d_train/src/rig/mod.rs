@@ -7,24 +7,39 @@
 //! Spaces: everything is in *model space*: right-handed, metres, +Y up, the figure faces +Z.
 //! Colours are linear (not sRGB) bytes, exactly as glTF's `COLOR_0` defines them.
 
+mod animation;
 mod centers;
+mod clips;
 mod error;
+#[cfg(test)]
+mod foreign_tests;
+mod hang;
+mod joints;
+mod nodes;
 mod open;
 mod read;
 mod regressor;
+mod report;
 mod skeleton;
 mod skinning;
+mod surface;
 #[cfg(test)]
 mod tests;
+mod weld;
 mod write;
+mod write_clips;
 
+pub use clips::Clip;
 pub use error::RigError;
 use glam::Vec3;
 pub(crate) use regressor::mean_of;
+pub use read::RigFile;
 pub use regressor::regressor;
+pub use report::RigReport;
 pub use skeleton::{Bone, Pose, Skeleton};
 pub use skinning::Skinning;
 use stick3d_figure::mesh::{NormalAdjacency, TriangleMesh};
+pub use weld::Weld;
 
 /// The largest number of bones that one vertex may follow: two glTF attribute sets of four.
 pub const MAX_INFLUENCES: usize = 8;
@@ -44,6 +59,8 @@ pub struct Rig {
     pub colors: Vec<[u8; 4]>,
     /// Per vertex: (bone, weight), strongest first, at most [`MAX_INFLUENCES`], weights summing to 1.
     pub influences: Vec<Vec<(u16, f32)>>,
+    /// Motions that came with the body; none unless they are set.
+    pub clips: Vec<Clip>,
     /// Per vertex the point that it turns about, model space at rest: see [`Rig::new`].
     centers: Vec<Vec3>,
 }
@@ -68,6 +85,7 @@ impl Rig {
             mesh,
             colors,
             influences,
+            clips: Vec::new(),
             centers: Vec::new(),
         };
         rig.validate()?;
@@ -103,9 +121,19 @@ impl Rig {
             ));
         }
         self.skeleton.validate()?;
+        let bones = self.skeleton.bones.len();
+        for clip in &self.clips {
+            if clip.times_s.len() != clip.poses.len()
+                || clip.poses.iter().any(|pose| pose.rotations.len() != bones)
+            {
+                return inconsistent(format!(
+                    "clip `{}` must have one pose per time and one rotation per bone",
+                    clip.name
+                ));
+            }
+        }
         for (vertex, list) in self.influences.iter().enumerate() {
             let sum: f32 = list.iter().map(|&(_, weight)| weight).sum();
-            let bones = self.skeleton.bones.len();
             if list.is_empty()
                 || list.len() > MAX_INFLUENCES
                 || (sum - 1.0).abs() > 1e-3

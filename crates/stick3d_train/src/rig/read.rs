@@ -1,276 +1,274 @@
-//! Reading a rig from a binary glTF.
+//! Reading a rig from a glTF.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
-use glam::{Mat4, Vec3};
-use gltf::mesh::Mode;
-use gltf::{Document, Node, Primitive, Skin};
+use glam::{Quat, Vec3};
+use gltf::Document;
 use stick3d_figure::mesh::TriangleMesh;
 
-use super::open::open;
-use super::{Bone, MAX_INFLUENCES, Rig, RigError, Skeleton};
+use super::animation::Animation;
+use super::clips::{Clip, Frame, Motion};
+use super::hang::hang_sliding_bones;
+use super::joints::Joints;
+use super::nodes::NodeTree;
+use super::open::{Source, named, open};
+use super::report::RigReport;
+use super::surface::{Carrier, Surface};
+use super::weld::Weld;
+use super::{Pose, Rig, RigError, Skeleton};
+
+/// A rig as it came from a file, with what was seen on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RigFile {
+    /// The rig.
+    pub rig: Rig,
+    /// One colour per triangle, linear bytes: sharper than [`Rig::colors`] where vertices of different
+    /// colours were welded.
+    pub triangle_colors: Vec<[u8; 4]>,
+    /// What was put right, and what is worth knowing.
+    pub report: RigReport,
+}
 
 impl Rig {
-    /// Reads the first skinned mesh of a `.glb` with everything that shares its skin.
-    ///
-    /// The rest is the file's default posture: transforms of all nodes above the bones apply, the
-    /// mesh node's own do not (glTF 2.0, section 3.7.3.3). Up to eight influences a vertex; weights
-    /// are scaled to sum to 1. Vertices without `COLOR_0` take their material's base colour.
+    /// Reads a rig from a `.glb`: [`RigFile::from_bytes`] without its report, colour borders kept.
     ///
     /// # Errors
     /// [`RigError`] says what is missing, cut short, contradictory or not supported.
     pub fn from_glb(bytes: &[u8]) -> Result<Self, RigError> {
-        let (document, blob) = open(bytes)?;
-        let skin = document
-            .nodes()
-            .find_map(|node| node.mesh().and(node.skin()))
-            .ok_or_else(|| missing("mesh with a skin"))?;
-        let globals = node_globals(&document)?;
-        let (skeleton, bone_of_joint) = read_skeleton(&document, &skin, &globals)?;
-        let mut rig = Self {
-            name: String::new(),
-            copyright: document.as_json().asset.copyright.clone(),
-            skeleton,
-            mesh: TriangleMesh {
-                positions: Vec::new(),
-                triangles: Vec::new(),
-            },
-            colors: Vec::new(),
-            influences: Vec::new(),
-            centers: Vec::new(),
-        };
-        let bind = bind_matrices(&skin, &blob, &globals)?;
-        let skinned = document.nodes().filter(|node| {
-            node.skin()
-                .is_some_and(|other| other.index() == skin.index())
-        });
-        for mesh in skinned.filter_map(|node| node.mesh()) {
-            if rig.name.is_empty() {
-                rig.name = mesh.name().unwrap_or("body").to_owned();
-            }
-            for primitive in mesh.primitives() {
-                rig.append(&primitive, &blob, &bind, &bone_of_joint)?;
-            }
+        RigFile::from_bytes(bytes, Weld::default()).map(|file| file.rig)
+    }
+}
+
+impl RigFile {
+    /// Reads a `.glb`, or a `.gltf` with its buffers embedded or beside it.
+    ///
+    /// # Errors
+    /// [`RigError`] says what is missing, cut short, contradictory or not supported.
+    pub fn read(path: &Path, weld: Weld) -> Result<Self, RigError> {
+        let bytes = std::fs::read(path).map_err(|source| RigError::Io {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::from_source(&open(&bytes, path.parent())?, weld)
+    }
+
+    /// Reads all skinned meshes of a `.glb`, or of a `.gltf` whose buffers are embedded.
+    ///
+    /// The transforms of all nodes above the bones apply, those of a skinned mesh's own node do not
+    /// (glTF 2.0, section 3.7.3.3). The rest is the pose that the skin was bound in. Meshes without a skin
+    /// that hang on a bone follow it whole. Weights are scaled to sum to 1; colours are `COLOR_0` times the
+    /// material's base colour, both linear; textures are not read. Animations become [`Rig::clips`]: bones
+    /// turn, and the roots move by [`Pose::root_translation`]; bones that the clips slide are hung where
+    /// they stay in place, if there is such a place.
+    ///
+    /// # Errors
+    /// [`RigError`] says what is missing, cut short, contradictory or not supported.
+    pub fn from_bytes(bytes: &[u8], weld: Weld) -> Result<Self, RigError> {
+        Self::from_source(&open(bytes, None)?, weld)
+    }
+
+    fn from_source(source: &Source, weld: Weld) -> Result<Self, RigError> {
+        let mut report = RigReport::default();
+        let tree = NodeTree::new(&source.document)?;
+        let mut joints = Joints::read(source, &tree, &mut report)?;
+        let mut surface = read_surface(source, &tree, &joints, &mut report)?;
+        let triangle_colors = surface
+            .triangles
+            .iter()
+            .map(|t| mean_color(&surface.colors, *t));
+        let triangle_colors = triangle_colors.collect();
+        report.welded = surface.weld(weld);
+        let motions = read_motions(source, &tree, &joints, &mut report)?;
+        let mut weights = vec![0.0; joints.nodes.len()];
+        for &(joint, weight) in surface.influences.iter().flatten() {
+            weights[usize::from(joint)] += weight;
         }
-        let Self {
-            name,
-            copyright,
+        hang_sliding_bones(&mut joints, &weights, &motions, &mut report);
+        let (skeleton, bone_of_joint) = joints.skeleton();
+        let influences: Vec<Vec<(u16, f32)>> = surface
+            .influences
+            .iter()
+            .map(|list| renumbered(list, &bone_of_joint))
+            .collect();
+        let clips = motions
+            .iter()
+            .map(|motion| clip(motion, &skeleton, &bone_of_joint, &influences))
+            .collect();
+        let mesh = TriangleMesh {
+            positions: surface.positions,
+            triangles: surface.triangles,
+        };
+        report.degenerate = mesh
+            .corners()
+            .filter(|[a, b, c]| (*b - *a).cross(*c - *a).length_squared() <= f32::MIN_POSITIVE)
+            .count();
+        note_what_is_not_read(&source.document, &mut report);
+        let mut rig = Rig::new(
+            body_name(&source.document),
+            source.document.as_json().asset.copyright.clone(),
             skeleton,
             mesh,
-            colors,
+            surface.colors,
             influences,
-            ..
-        } = rig;
-        Self::new(name, copyright, skeleton, mesh, colors, influences)
-    }
-
-    fn append(
-        &mut self,
-        primitive: &Primitive<'_>,
-        blob: &[u8],
-        bind: &[Mat4],
-        bone_of_joint: &[u16],
-    ) -> Result<(), RigError> {
-        if primitive.mode() != Mode::Triangles {
-            return Err(RigError::Unsupported {
-                what: "lines, points or strips".into(),
-            });
-        }
-        let reader = primitive.reader(|_| Some(blob));
-        let first = self.mesh.positions.len() as u32;
-        let points: Vec<Vec3> = reader
-            .read_positions()
-            .ok_or_else(|| missing("vertex positions"))?
-            .map(Vec3::from)
-            .collect();
-        let mut joints: Vec<Vec<(u16, f32)>> = vec![Vec::new(); points.len()];
-        for set in 0..(MAX_INFLUENCES / 4) as u32 {
-            let (Some(numbers), Some(weights)) =
-                (reader.read_joints(set), reader.read_weights(set))
-            else {
-                continue;
-            };
-            for ((list, four), shares) in joints
-                .iter_mut()
-                .zip(numbers.into_u16())
-                .zip(weights.into_f32())
-            {
-                list.extend(
-                    four.into_iter()
-                        .zip(shares)
-                        .filter(|&(_, share)| share > 0.0),
-                );
-            }
-        }
-        for (vertex, (point, list)) in points.iter().zip(&joints).enumerate() {
-            let vertex = first as usize + vertex;
-            let (point, influences) =
-                rest_of(*point, list, bind, bone_of_joint).ok_or_else(|| {
-                    RigError::Inconsistent {
-                        what: format!("vertex {vertex} follows no bone of the skin"),
-                    }
-                })?;
-            self.mesh.positions.push(point);
-            self.influences.push(influences);
-        }
-        let flat = primitive
-            .material()
-            .pbr_metallic_roughness()
-            .base_color_factor();
-        let flat = flat.map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8);
-        match reader.read_colors(0) {
-            Some(colors) => self.colors.extend(colors.into_rgba_u8()),
-            None => self.colors.extend(std::iter::repeat_n(flat, points.len())),
-        }
-        let indices: Vec<u32> = match reader.read_indices() {
-            Some(indices) => indices.into_u32().collect(),
-            None => (0..points.len() as u32).collect(),
-        };
-        self.mesh.triangles.extend(
-            indices
-                .as_chunks::<3>()
-                .0
-                .iter()
-                .map(|corners| corners.map(|c| first.saturating_add(c))),
-        );
-        Ok(())
-    }
-}
-
-fn missing(what: &str) -> RigError {
-    RigError::Missing { what: what.into() }
-}
-
-/// The model-space matrix of every node.
-fn node_globals(document: &Document) -> Result<Vec<Mat4>, RigError> {
-    let parents = node_parents(document);
-    let locals: Vec<Mat4> = document
-        .nodes()
-        .map(|node| Mat4::from_cols_array_2d(&node.transform().matrix()))
-        .collect();
-    (0..locals.len())
-        .map(|node| {
-            let mut global = locals[node];
-            let mut at = node;
-            for _ in 0..=locals.len() {
-                match parents.get(&at) {
-                    Some(&parent) => {
-                        global = locals[parent] * global;
-                        at = parent;
-                    }
-                    None => return Ok(global),
-                }
-            }
-            Err(RigError::Inconsistent {
-                what: format!("node {node} hangs below itself"),
-            })
+        )?;
+        rig.clips = clips;
+        Ok(Self {
+            rig,
+            triangle_colors,
+            report,
         })
+    }
+}
+
+/// Everything that follows the joints: skinned meshes, and meshes that hang on one.
+fn read_surface(
+    source: &Source,
+    tree: &NodeTree,
+    joints: &Joints,
+    report: &mut RigReport,
+) -> Result<Surface, RigError> {
+    let mut surface = Surface::default();
+    let globals = tree.globals();
+    for node in source.document.nodes() {
+        let Some(mesh) = node.mesh() else { continue };
+        if let Some(skin) = node.skin() {
+            let bind = joints.bind(source, &skin)?;
+            surface.add(source, &mesh, &Carrier::Skin(&bind), report)?;
+            continue;
+        }
+        let joint_of = |node: usize| joints.nodes.iter().position(|&other| other == node);
+        let carrier = joint_of(node.index()).or_else(|| {
+            let above = tree.above(node.index(), |at| joint_of(at).is_some())?;
+            joint_of(above)
+        });
+        let name = named(node.name(), node.index());
+        match carrier {
+            Some(joint) => {
+                let above = globals[joints.nodes[joint]];
+                let place = joints.rest[joint] * above.inverse() * globals[node.index()];
+                surface.add(source, &mesh, &Carrier::Joint(joint as u16, place), report)?;
+            }
+            None => report.notes.push(format!(
+                "mesh node {name} has no skin and hangs on no bone; it is left out"
+            )),
+        }
+    }
+    Ok(surface)
+}
+
+fn read_motions(
+    source: &Source,
+    tree: &NodeTree,
+    joints: &Joints,
+    report: &mut RigReport,
+) -> Result<Vec<Motion>, RigError> {
+    let animations = Animation::read_all(source)?;
+    if let Some((animation, node)) = animations
+        .iter()
+        .find_map(|animation| Some((animation, animation.scaled_node(tree)?)))
+    {
+        let name = source.document.nodes().nth(node);
+        report.notes.push(format!(
+            "clip `{}` stretches node {}, which poses cannot; only turns are kept",
+            animation.name,
+            named(name.and_then(|node| node.name()), node)
+        ));
+    }
+    animations
+        .iter()
+        .map(|animation| joints.motion(animation, tree))
         .collect()
 }
 
-fn node_parents(document: &Document) -> BTreeMap<usize, usize> {
-    let children = |node: Node<'_>| {
-        let parent = node.index();
-        node.children()
-            .map(move |child| (child.index(), parent))
-            .collect::<Vec<_>>()
-    };
-    document.nodes().flat_map(children).collect()
-}
-
-/// The bones, parents first, and for every joint of the skin the number of its bone.
-fn read_skeleton(
-    document: &Document,
-    skin: &Skin<'_>,
-    globals: &[Mat4],
-) -> Result<(Skeleton, Vec<u16>), RigError> {
-    let parents = node_parents(document);
-    let joints: Vec<Node<'_>> = skin.joints().collect();
-    let joint_of_node: BTreeMap<usize, usize> = joints
+fn renumbered(list: &[(u16, f32)], bone_of_joint: &[u16]) -> Vec<(u16, f32)> {
+    let by_bone: BTreeMap<u16, f32> = list
         .iter()
-        .enumerate()
-        .map(|(joint, node)| (node.index(), joint))
+        .map(|&(joint, weight)| (bone_of_joint[usize::from(joint)], weight))
         .collect();
-    let parent_joint = |joint: usize| {
-        let mut at = joints[joint].index();
-        while let Some(&parent) = parents.get(&at) {
-            if let Some(&found) = joint_of_node.get(&parent) {
-                return Some(found);
-            }
-            at = parent;
-        }
-        None
-    };
-    let depth = |joint: usize| std::iter::successors(Some(joint), |&j| parent_joint(j)).count();
-    let mut order: Vec<usize> = (0..joints.len()).collect();
-    order.sort_by_cached_key(|&joint| depth(joint));
-    let mut bone_of_joint = vec![0u16; joints.len()];
-    for (bone, &joint) in order.iter().enumerate() {
-        bone_of_joint[joint] = u16::try_from(bone).map_err(|_| RigError::Unsupported {
-            what: "more than 65,535 bones".into(),
-        })?;
-    }
-    let bones = order
-        .iter()
-        .map(|&joint| {
-            let (_, rest_rotation, head) =
-                globals[joints[joint].index()].to_scale_rotation_translation();
-            Bone {
-                name: joints[joint]
-                    .name()
-                    .map_or_else(|| format!("bone_{joint}"), str::to_owned),
-                parent: parent_joint(joint).map(|parent| usize::from(bone_of_joint[parent])),
-                head,
-                rest_rotation,
-            }
-        })
-        .collect();
-    Ok((Skeleton { bones }, bone_of_joint))
+    let mut list: Vec<(u16, f32)> = by_bone.into_iter().collect();
+    list.sort_by(|a, b| b.1.total_cmp(&a.1));
+    list
 }
 
-/// Per joint the matrix from the file's vertices to model space at rest.
-fn bind_matrices(skin: &Skin<'_>, blob: &[u8], globals: &[Mat4]) -> Result<Vec<Mat4>, RigError> {
-    let joints: Vec<usize> = skin.joints().map(|node| node.index()).collect();
-    let reader = skin.reader(|_| Some(blob));
-    let inverse: Vec<Mat4> = match reader.read_inverse_bind_matrices() {
-        Some(matrices) => matrices.map(|m| Mat4::from_cols_array_2d(&m)).collect(),
-        None => vec![Mat4::IDENTITY; joints.len()],
-    };
-    if inverse.len() < joints.len() {
-        return Err(RigError::Inconsistent {
-            what: format!(
-                "{} bones but {} inverse bind matrices",
-                joints.len(),
-                inverse.len()
-            ),
-        });
-    }
-    Ok(joints
-        .iter()
-        .zip(inverse)
-        .map(|(&node, inverse)| globals[node] * inverse)
-        .collect())
-}
-
-/// A vertex's place at rest and its influences, strongest first; `None` if it follows no bone.
-fn rest_of(
-    point: Vec3,
-    list: &[(u16, f32)],
-    bind: &[Mat4],
+/// A motion as poses of the skeleton; the root that carries most of the surface leads the way.
+fn clip(
+    motion: &Motion,
+    skeleton: &Skeleton,
     bone_of_joint: &[u16],
-) -> Option<(Vec3, Vec<(u16, f32)>)> {
-    let sum: f32 = list.iter().map(|&(_, weight)| weight).sum();
-    if !sum.is_finite() || sum <= 0.0 {
-        return None;
+    influences: &[Vec<(u16, f32)>],
+) -> Clip {
+    let mut carried = vec![0.0_f32; skeleton.bones.len()];
+    for &(bone, weight) in influences.iter().flatten() {
+        carried[skeleton.root_of(usize::from(bone))] += weight;
     }
-    let mut placed = Vec3::ZERO;
-    let mut merged: BTreeMap<u16, f32> = BTreeMap::new();
-    for &(joint, weight) in list {
-        let matrix = bind.get(usize::from(joint))?;
-        placed += matrix.transform_point3(point) * (weight / sum);
-        *merged.entry(bone_of_joint[usize::from(joint)]).or_default() += weight / sum;
+    let leader = (0..carried.len()).max_by(|&a, &b| {
+        let rank = |bone: usize| (carried[bone], std::cmp::Reverse(bone));
+        let (a, b) = (rank(a), rank(b));
+        a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+    });
+    let pose = |frame: &Frame| {
+        let mut posed = vec![(Quat::IDENTITY, Vec3::ZERO); skeleton.bones.len()];
+        for (joint, &place) in frame.joints.iter().enumerate() {
+            posed[usize::from(bone_of_joint[joint])] = place;
+        }
+        let rotations = skeleton.bones.iter().zip(&posed).map(|(bone, (turn, _))| {
+            let above = bone.parent.map_or(Quat::IDENTITY, |parent| posed[parent].0);
+            (above.inverse() * *turn).normalize()
+        });
+        Pose {
+            rotations: rotations.collect(),
+            root_translation: leader
+                .map_or(Vec3::ZERO, |bone| posed[bone].1 - skeleton.bones[bone].head),
+        }
+    };
+    Clip {
+        name: motion.name.clone(),
+        times_s: motion.frames.iter().map(|frame| frame.time_s).collect(),
+        poses: motion.frames.iter().map(pose).collect(),
     }
-    let mut influences: Vec<(u16, f32)> = merged.into_iter().collect();
-    influences.sort_by(|a, b| b.1.total_cmp(&a.1));
-    Some((placed, influences))
+}
+
+fn mean_color(colors: &[[u8; 4]], corners: [u32; 3]) -> [u8; 4] {
+    let [a, b, c] = corners.map(|corner| colors[corner as usize].map(u16::from));
+    [0, 1, 2, 3].map(|i| ((a[i] + b[i] + c[i] + 1) / 3) as u8)
+}
+
+/// The name of the skinned mesh that comes first.
+fn body_name(document: &Document) -> String {
+    let skinned = document.nodes().find_map(|node| {
+        let mesh = node.mesh()?;
+        node.skin()?;
+        node.name().or(mesh.name()).map(str::to_owned)
+    });
+    skinned.unwrap_or_else(|| "body".to_owned())
+}
+
+fn note_what_is_not_read(document: &Document, report: &mut RigReport) {
+    let textured: Vec<String> = document
+        .materials()
+        .filter(|material| {
+            material
+                .pbr_metallic_roughness()
+                .base_color_texture()
+                .is_some()
+        })
+        .map(|material| named(material.name(), material.index().unwrap_or_default()))
+        .collect();
+    if !textured.is_empty() {
+        report.notes.push(format!(
+            "textures are not read: {} shows its base colour and vertex colours only",
+            textured.join(", ")
+        ));
+    }
+    let shaped = |mesh: &gltf::Mesh<'_>| {
+        mesh.primitives()
+            .any(|p| p.morph_targets().next().is_some())
+    };
+    for mesh in document.meshes().filter(shaped) {
+        report.notes.push(format!(
+            "the morph targets of mesh {} are not read",
+            named(mesh.name(), mesh.index())
+        ));
+    }
 }

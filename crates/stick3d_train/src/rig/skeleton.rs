@@ -118,6 +118,15 @@ impl Skeleton {
         transforms
     }
 
+    /// The bone that `bone` hangs on in the end, itself if it is a root.
+    pub fn root_of(&self, bone: usize) -> usize {
+        let mut at = bone;
+        while let Some(parent) = self.bones[at].parent {
+            at = parent;
+        }
+        at
+    }
+
     /// Whether `bone` is `ancestor` or hangs below it.
     pub fn is_below(&self, bone: usize, ancestor: usize) -> bool {
         let mut at = Some(bone);

@@ -14,7 +14,7 @@ impl Rig {
     ///
     /// Attributes: `POSITION`, `NORMAL`, `COLOR_0` (normalised bytes, linear), `JOINTS_0`/`WEIGHTS_0`
     /// and, where a vertex follows more than four bones, `JOINTS_1`/`WEIGHTS_1` (normalised 16-bit
-    /// weights). The same rig gives the same bytes.
+    /// weights). Clips become animations. The same rig gives the same bytes.
     ///
     /// # Errors
     /// [`RigError::Inconsistent`] for a rig that [`Rig::validate`] refuses.
@@ -24,6 +24,9 @@ impl Rig {
         file.root.asset.copyright.clone_from(&self.copyright);
         let mesh = self.write_mesh(&mut file)?;
         self.write_scene(&mut file, mesh);
+        for clip in &self.clips {
+            self.write_clip(&mut file, clip);
+        }
         Ok(file.finish()?)
     }
 
