@@ -9,6 +9,7 @@ mod align;
 mod body;
 mod controls;
 mod error;
+mod fit;
 mod goals;
 mod library;
 mod posing;

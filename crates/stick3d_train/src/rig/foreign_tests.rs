@@ -374,7 +374,7 @@ fn clips_turn_bones_about_model_axes_and_move_the_root() {
         // The armature lays the file's y along the model's -z.
         let expected = Quat::from_axis_angle(-Vec3::Z, angle);
         assert!(
-            pose.rotations[1].abs_diff_eq(expected, 1e-4),
+            pose.rotations[1].dot(expected).abs() > 1.0 - 1e-6,
             "{time}: {pose:?}"
         );
         assert!(
@@ -389,7 +389,7 @@ fn clips_turn_bones_about_model_axes_and_move_the_root() {
             read.root_translation
                 .abs_diff_eq(written.root_translation, 1e-5)
         );
-        assert!(read.rotations[1].abs_diff_eq(written.rotations[1], 1e-4));
+        assert!(read.rotations[1].dot(written.rotations[1]).abs() > 1.0 - 1e-6);
     }
 }
 
