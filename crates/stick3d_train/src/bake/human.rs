@@ -8,7 +8,7 @@ use stick3d_figure::TriangleMesh;
 use super::dress::Face;
 use super::eyes::Eyeball;
 use super::obj::Obj;
-use super::surface::Surface;
+use super::surface::{Surface, strongest};
 use super::wheel::Wheel;
 use super::{BakeError, cavity, dress, eyes, makehuman};
 use crate::rig::{Rig, Skeleton};
@@ -112,7 +112,7 @@ pub fn build(path: &Path) -> Result<Rig, BakeError> {
     let influences = surface
         .influences
         .iter()
-        .map(|list| strongest(list))
+        .map(|list| strongest(list, INFLUENCES))
         .collect();
     let copyright = Some(COPYRIGHT.into());
     Ok(Rig::new(
@@ -168,15 +168,4 @@ impl Placement {
     fn apply(&self, point: DVec3) -> DVec3 {
         (point - DVec3::Y * self.lowest) * self.scale
     }
-}
-
-/// The strongest influences, scaled to sum to 1.
-fn strongest(list: &[(u16, f64)]) -> Vec<(u16, f32)> {
-    let mut list = list.to_vec();
-    list.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-    list.truncate(INFLUENCES);
-    let sum: f64 = list.iter().map(|&(_, weight)| weight).sum();
-    list.into_iter()
-        .map(|(bone, weight)| (bone, (weight / sum) as f32))
-        .collect()
 }

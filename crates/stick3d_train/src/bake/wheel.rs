@@ -50,6 +50,14 @@ impl Wheel {
         })
     }
 
+    /// The bytes of a file in the wheel.
+    pub(super) fn binary(&mut self, entry: &str) -> Result<Vec<u8>, BakeError> {
+        self.raw(entry)?.ok_or_else(|| BakeError::Entry {
+            entry: entry.into(),
+            source: io::ErrorKind::NotFound.into(),
+        })
+    }
+
     /// The text of a gzip file in the wheel; `None` if there is no such file.
     pub(super) fn gzip_text(&mut self, entry: &str) -> Result<Option<String>, BakeError> {
         let Some(packed) = self.raw(entry)? else {
