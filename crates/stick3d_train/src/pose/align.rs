@@ -7,21 +7,21 @@
 use glam::{Mat3, Quat, Vec3};
 
 use super::error::PoseError;
-use super::spec::{Half, NeutralSpec, SideOf, Stance};
+use super::spec::{ControlsSpec, Half, Lateral, SideOf, Stance};
 use crate::rig::Skeleton;
 
 /// Every bone's whole rotation from rest to the neutral stance.
 pub(super) fn neutral_rotations(
     skeleton: &Skeleton,
-    neutral: &[NeutralSpec],
+    controls: &ControlsSpec,
 ) -> Result<Vec<Quat>, PoseError> {
     let mut own: Vec<Option<Quat>> = vec![None; skeleton.bones.len()];
-    for spec in neutral {
+    for spec in &controls.neutral {
         for &half in Half::of(&spec.bone) {
             let bone = skeleton.bone_index(&half.name(&spec.bone))?;
             own[bone] = Some(match &spec.stance {
                 Stance::Rest => Quat::IDENTITY,
-                Stance::Aim { .. } => aim(skeleton, bone, &spec.stance, half)?,
+                Stance::Aim { .. } => aim(skeleton, bone, &spec.stance, half, controls.lateral)?,
             });
         }
     }
@@ -36,7 +36,13 @@ pub(super) fn neutral_rotations(
     Ok(whole)
 }
 
-fn aim(skeleton: &Skeleton, bone: usize, stance: &Stance, half: Half) -> Result<Quat, PoseError> {
+fn aim(
+    skeleton: &Skeleton,
+    bone: usize,
+    stance: &Stance,
+    half: Half,
+    lateral: Lateral,
+) -> Result<Quat, PoseError> {
     let Stance::Aim {
         toward,
         points,
@@ -52,12 +58,12 @@ fn aim(skeleton: &Skeleton, bone: usize, stance: &Stance, half: Half) -> Result<
     let line = head(toward)? - skeleton.bones[bone].head;
     // Only an axis of rotation changes its hand under reflection; a plain direction does not.
     let (side, becomes) = match side {
-        SideOf::Between(from, to) => (head(to)? - head(from)?, half.direction(*becomes)),
+        SideOf::Between(from, to) => (head(to)? - head(from)?, half.direction(*becomes, lateral)),
         SideOf::Bend(a, b, c) => (
             (head(b)? - head(a)?).cross(head(c)? - head(b)?),
-            half.axis(*becomes),
+            half.axis(*becomes, lateral),
         ),
-        SideOf::Axis(axis) => (half.axis(*axis), half.axis(*becomes)),
+        SideOf::Axis(axis) => (half.axis(*axis, lateral), half.axis(*becomes, lateral)),
     };
     let frame = |what, line, side| {
         frame(line, side).ok_or_else(|| {
@@ -69,7 +75,7 @@ fn aim(skeleton: &Skeleton, bone: usize, stance: &Stance, half: Half) -> Result<
         })
     };
     let rest = frame("at rest", line, side)?;
-    let stands = frame("in the stance", half.direction(*points), becomes)?;
+    let stands = frame("in the stance", half.direction(*points, lateral), becomes)?;
     Ok(Quat::from_mat3(&(stands * rest.transpose())).normalize())
 }
 

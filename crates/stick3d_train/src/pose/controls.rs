@@ -7,7 +7,7 @@ use glam::{Quat, Vec3};
 use super::align::neutral_rotations;
 use super::body::Body;
 use super::error::{PoseError, hint};
-use super::spec::{ControlsSpec, Half, SwingSpec, mirrored_name, piecewise};
+use super::spec::{ControlsSpec, Half, Lateral, SwingSpec, mirrored_name, piecewise};
 use crate::rig::{Rig, Skeleton};
 
 /// One named degree of freedom.
@@ -68,6 +68,10 @@ pub struct Controls {
     /// Per bone, outermost first.
     pub(super) turns: Vec<Vec<Turn>>,
     pub(super) swings: Vec<Swing>,
+    pub(super) lateral: Lateral,
+    /// Per control the limb it belongs to, see [`ControlsSpec::limbs`].
+    limb_of: Vec<Option<usize>>,
+    limb_count: usize,
     body: Body,
 }
 
@@ -90,18 +94,46 @@ impl Controls {
     pub fn bind(spec: &ControlsSpec, rig: &Rig) -> Result<Self, PoseError> {
         let skeleton = rig.skeleton.clone();
         let mut controls = Self {
-            neutral: neutral_rotations(&skeleton, &spec.neutral)?,
+            neutral: neutral_rotations(&skeleton, spec)?,
             turns: vec![Vec::new(); skeleton.bones.len()],
             list: Vec::new(),
             by_name: BTreeMap::new(),
             swings: Vec::new(),
+            lateral: spec.lateral,
+            limb_of: Vec::new(),
+            limb_count: 0,
             body: Body::fit(rig, spec)?,
             skeleton,
         };
         controls.add_turns(spec)?;
         controls.add_swings(spec)?;
         controls.pair()?;
+        controls.add_limbs(spec)?;
         Ok(controls)
+    }
+
+    fn add_limbs(&mut self, spec: &ControlsSpec) -> Result<(), PoseError> {
+        self.limb_of = vec![None; self.list.len()];
+        for stems in &spec.limbs {
+            for &half in Half::of(&stems.concat()) {
+                for stem in stems {
+                    let stem = half.name(stem);
+                    let place = format!("limb {}", self.limb_count + 1);
+                    let mut known = false;
+                    for (index, control) in self.list.iter().enumerate() {
+                        if control.name.split('.').next() == Some(&stem) {
+                            self.limb_of[index] = Some(self.limb_count);
+                            known = true;
+                        }
+                    }
+                    if !known {
+                        self.index(&stem, &place)?;
+                    }
+                }
+                self.limb_count += 1;
+            }
+        }
+        Ok(())
     }
 
     fn add_turns(&mut self, spec: &ControlsSpec) -> Result<(), PoseError> {
@@ -119,7 +151,9 @@ impl Controls {
                 self.list[index].odd = control.odd;
                 for drive in &control.drives {
                     let bone = self.skeleton.bone_index(&half.name(&drive.bone))?;
-                    let axis = half.axis(drive.axis).try_normalize().ok_or_else(|| {
+                    let axis = half
+                        .axis(drive.axis, spec.lateral)
+                        .try_normalize().ok_or_else(|| {
                         PoseError::inconsistent(control.name.clone(), "an axis has no length")
                     })?;
                     self.turns[bone].push(Turn {
@@ -148,7 +182,7 @@ impl Controls {
                     plane: first,
                     bone: self.skeleton.bone_index(&half.name(&swing.bone))?,
                     girdle: self.skeleton.bone_index(&half.name(&swing.girdle))?,
-                    side: half.direction(Vec3::X).x,
+                    side: half.direction(Vec3::X, Lateral::X).x,
                     spec: swing.clone(),
                 });
             }
@@ -198,6 +232,17 @@ impl Controls {
     /// All controls. [`PoseValues::degrees`] has this order.
     pub fn list(&self) -> &[Control] {
         &self.list
+    }
+
+    /// The limb that control `index` belongs to, of [`Controls::limb_count`]; none: the trunk and what
+    /// stays with it.
+    pub fn limb_of(&self, index: usize) -> Option<usize> {
+        self.limb_of.get(index).copied().flatten()
+    }
+
+    /// How many limbs may be posed apart from the trunk.
+    pub fn limb_count(&self) -> usize {
+        self.limb_count
     }
 
     /// The body's parts: what touches the ground, and what may not run into each other.

@@ -97,14 +97,15 @@ impl Goal {
                     into.push(Bound::Reach {
                         part,
                         bone,
-                        at: half.direction(*at),
+                        at: half.direction(*at, controls.lateral),
                     });
                 }
             }
             Self::Face { part, axis, toward } => {
                 for &half in Half::of(part) {
                     let part = body.index(&half.name(part))?;
-                    let (axis, toward) = (half.direction(*axis), half.direction(*toward));
+                    let side = |v: &Vec3| half.direction(*v, controls.lateral);
+                    let (axis, toward) = (side(axis), side(toward));
                     into.push(Bound::Face {
                         part,
                         axis,

@@ -26,7 +26,7 @@ pub use posing::BoneTransforms;
 pub use sampler::{PoseSampler, SampleKind};
 pub use sheet::pose_sheet;
 pub use spec::{
-    ControlSpec, ControlsSpec, DriveSpec, NeutralSpec, PartSpec, SideOf, Stance, SwingSpec,
+    ControlSpec, ControlsSpec, DriveSpec, Lateral, NeutralSpec, PartSpec, SideOf, Stance, SwingSpec,
 };
 
 /// The human's controls, `assets/rigs/human.controls.ron`.

@@ -3,6 +3,7 @@
 use glam::{Quat, Vec3};
 
 use super::controls::{Controls, PoseValues, Swing};
+use super::spec::Lateral;
 use crate::rig::{Pose, Rig};
 
 /// Where every bone stands: (whole rotation against the rest, head).
@@ -39,13 +40,12 @@ impl Controls {
     #[must_use]
     pub fn mirror_pose(&self, pose: &Pose) -> Pose {
         let rotations = self.skeleton.bones.iter().enumerate().map(|(bone, _)| {
-            let q = pose.rotations[self.mirrored_bone(bone)];
-            Quat::from_xyzw(q.x, -q.y, -q.z, q.w)
+            self.lateral
+                .mirror_turn(pose.rotations[self.mirrored_bone(bone)])
         });
-        let t = pose.root_translation;
         Pose {
             rotations: rotations.collect(),
-            root_translation: Vec3::new(-t.x, t.y, t.z),
+            root_translation: self.lateral.mirror(pose.root_translation),
         }
     }
 
@@ -67,12 +67,12 @@ impl Controls {
             let mut local = self.local(bone, values);
             for swing in &self.swings {
                 if swing.girdle == bone {
-                    local *= swing.girdle_rotation(values);
+                    local *= swing.girdle_rotation(values, self.lateral);
                 } else if swing.bone == bone {
                     // The limb's direction counts from the trunk, whatever the girdle does.
                     let trunk = stance_of(&stance, bones[swing.girdle].parent);
                     let above = stance_of(&stance, parent);
-                    local = above.inverse() * trunk * swing.rotation(values) * local;
+                    local = above.inverse() * trunk * swing.rotation(values, self.lateral) * local;
                 }
             }
             stance.push(stance_of(&stance, parent) * local);
@@ -101,14 +101,14 @@ impl Swing {
     }
 
     /// The limb against the trunk: the shortest swing out of the hanging position, after a twist.
-    fn rotation(&self, values: &PoseValues) -> Quat {
+    fn rotation(&self, values: &PoseValues, lateral: Lateral) -> Quat {
         let (plane, raise, twist) = self.angles(values);
-        let axis = Vec3::new(-plane.sin(), 0.0, self.side * plane.cos());
+        let axis = lateral.facing(Vec3::new(-plane.sin(), 0.0, self.side * plane.cos()));
         Quat::from_axis_angle(axis, raise) * Quat::from_rotation_y(-self.side * twist)
     }
 
     /// How the girdle follows: up with the raise, forward or back with the reach.
-    fn girdle_rotation(&self, values: &PoseValues) -> Quat {
+    fn girdle_rotation(&self, values: &PoseValues, lateral: Lateral) -> Quat {
         let (plane, raise, _) = self.angles(values);
         let from = self.spec.girdle_from.to_radians();
         // Smooth at the onset: a hyperbola between nothing and the full share.
@@ -116,6 +116,9 @@ impl Swing {
         let above = 0.5 * (above + (above * above + 0.04).sqrt());
         let forward = self.spec.girdle_forward.to_radians() * raise.sin() * plane.sin();
         Quat::from_rotation_y(-self.side * forward)
-            * Quat::from_rotation_z(self.side * self.spec.girdle_up * above)
+            * Quat::from_axis_angle(
+                lateral.facing(Vec3::Z),
+                self.side * self.spec.girdle_up * above,
+            )
     }
 }

@@ -11,32 +11,6 @@ use crate::rig::{Pose, Rig};
 const ALLOWED_OVERLAP_M: f32 = 0.02;
 /// Attempts at one pose before falling back to a known good one.
 const ATTEMPTS: usize = 40;
-/// The limbs that a natural pose may take from different poses of the library.
-const LIMBS: [&[&str]; 4] = [
-    &[
-        "shoulder_l",
-        "elbow_l",
-        "forearm_l",
-        "wrist_l",
-        "clavicle_l",
-        "fingers_l",
-        "thumb_l",
-        "index_l",
-    ],
-    &[
-        "shoulder_r",
-        "elbow_r",
-        "forearm_r",
-        "wrist_r",
-        "clavicle_r",
-        "fingers_r",
-        "thumb_r",
-        "index_r",
-    ],
-    &["neck"],
-    &["spine"],
-];
-
 /// Which poses a [`PoseSampler`] draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SampleKind {
@@ -53,8 +27,6 @@ pub enum SampleKind {
 pub struct PoseSampler<'a> {
     controls: &'a Controls,
     poses: Vec<PoseValues>,
-    /// Which limb of [`LIMBS`] a control belongs to; none: pelvis and legs, which stay together.
-    limb_of: Vec<Option<usize>>,
     random: ChaCha8Rng,
 }
 
@@ -64,10 +36,6 @@ impl<'a> PoseSampler<'a> {
     /// `rig` is the rig that `controls` are bound to.
     pub fn new(rig: &Rig, controls: &'a Controls, library: &PoseLibrary, seed: u64) -> Self {
         debug_assert_eq!(rig.skeleton.bones.len(), controls.skeleton.bones.len());
-        let limb_of = controls.list().iter().map(|control| {
-            let stem = control.name.split('.').next().unwrap_or_default();
-            LIMBS.iter().position(|stems| stems.contains(&stem))
-        });
         Self {
             controls,
             poses: library
@@ -75,7 +43,6 @@ impl<'a> PoseSampler<'a> {
                 .iter()
                 .map(|pose| pose.values.clone())
                 .collect(),
-            limb_of: limb_of.collect(),
             random: ChaCha8Rng::seed_from_u64(seed),
         }
     }
@@ -130,8 +97,7 @@ impl<'a> PoseSampler<'a> {
             .map(|_| self.random.random_range(0..self.poses.len()))
             .collect();
         let body = self.weights(count);
-        let limbs: Vec<Vec<f32>> = LIMBS
-            .iter()
+        let limbs: Vec<Vec<f32>> = (0..self.controls.limb_count())
             .map(|_| {
                 if self.random.random_bool(0.5) {
                     body.clone()
@@ -142,7 +108,10 @@ impl<'a> PoseSampler<'a> {
             .collect();
         let mut values = self.controls.ease();
         for index in 0..values.degrees.len() {
-            let weights = self.limb_of[index].map_or(&body, |limb| &limbs[limb]);
+            let weights = self
+                .controls
+                .limb_of(index)
+                .map_or(&body, |limb| &limbs[limb]);
             let blended: f32 = weights
                 .iter()
                 .zip(&picks)

@@ -1,6 +1,6 @@
 //! The file of controls: how it is written, and how one side stands for both.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// Ending of a name that stands for both sides: `elbow_@` is `elbow_l` and `elbow_r`.
@@ -9,23 +9,67 @@ const BOTH: char = '@';
 /// A file of controls (`assets/rigs/*.controls.ron`).
 ///
 /// Everything paired is written once, for the left side, with `@` in place of `l` and `r` (and `#` for
-/// the other side). The right side is its mirror image in the plane x = 0: a direction's x changes
-/// sign, a rotation axis' y and z do.
+/// the other side). The right side is its mirror image in the plane that [`Lateral`] names: a
+/// direction's part across that plane changes sign, a rotation axis' other two do.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ControlsSpec {
     /// The rig these controls are for.
     pub rig: String,
+    /// The axis from side to side.
+    #[serde(default)]
+    pub lateral: Lateral,
     /// How bones stand in the neutral stance, where every control is 0.
     pub neutral: Vec<NeutralSpec>,
     /// Hinges and other turns about fixed axes.
     pub controls: Vec<ControlSpec>,
     /// Ball joints steered by direction: the shoulders.
+    #[serde(default)]
     pub swings: Vec<SwingSpec>,
+    /// Names before the dot of the controls that a natural pose may take from another pose of the
+    /// library than the rest; what is in none stays together.
+    #[serde(default)]
+    pub limbs: Vec<Vec<String>>,
     /// Pieces of the body that touch the ground or each other.
     pub parts: Vec<PartSpec>,
     /// Pairs of parts that may overlap, because flesh gives way there or they are joined.
     pub may_overlap: Vec<(String, String)>,
+}
+
+/// Which axis of model space goes from side to side; the body is symmetric about the plane across it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Lateral {
+    /// The body faces +Z; its left is +X.
+    #[default]
+    X,
+    /// The body faces +X; its left is -Z.
+    Z,
+}
+
+impl Lateral {
+    /// The mirror image of a direction.
+    pub(crate) fn mirror(self, v: Vec3) -> Vec3 {
+        match self {
+            Self::X => Vec3::new(-v.x, v.y, v.z),
+            Self::Z => Vec3::new(v.x, v.y, -v.z),
+        }
+    }
+
+    /// The mirror image of a rotation.
+    pub(crate) fn mirror_turn(self, q: Quat) -> Quat {
+        match self {
+            Self::X => Quat::from_xyzw(q.x, -q.y, -q.z, q.w),
+            Self::Z => Quat::from_xyzw(-q.x, -q.y, q.z, q.w),
+        }
+    }
+
+    /// A direction of a body that faces +Z as one of this body.
+    pub(crate) fn facing(self, v: Vec3) -> Vec3 {
+        match self {
+            Self::X => v,
+            Self::Z => Vec3::new(v.z, v.y, -v.x),
+        }
+    }
 }
 
 /// How one bone stands in the neutral stance.
@@ -184,18 +228,18 @@ impl Half {
     }
 
     /// A direction on this side.
-    pub(crate) fn direction(self, v: Vec3) -> Vec3 {
+    pub(crate) fn direction(self, v: Vec3, lateral: Lateral) -> Vec3 {
         if self == Half::Right {
-            Vec3::new(-v.x, v.y, v.z)
+            lateral.mirror(v)
         } else {
             v
         }
     }
 
     /// A rotation axis on this side.
-    pub(crate) fn axis(self, v: Vec3) -> Vec3 {
+    pub(crate) fn axis(self, v: Vec3, lateral: Lateral) -> Vec3 {
         if self == Half::Right {
-            Vec3::new(v.x, -v.y, -v.z)
+            -lateral.mirror(v)
         } else {
             v
         }
