@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &TrainArguments) -> Outcome {
         return mesh_set::train(arguments, folder, &figure);
     }
     let corpus = Corpus::read(&arguments.body)?;
-    let config = config(arguments);
+    let config = config(arguments, &figure);
     let (trained_on, held_out) = corpus.split(config.seed);
     let streams = |number: u64| corpus.stream(&trained_on, config.seed.rotate_left(32) ^ number);
     let input = TrainInput {
@@ -113,8 +113,8 @@ fn with_metrics(model: Model, report: &Report) -> Outcome<Model> {
     Model::new(parts).map_err(Failure::model)
 }
 
-fn config(arguments: &TrainArguments) -> TrainConfig {
-    quicker(arguments, TrainConfig::human())
+fn config(arguments: &TrainArguments, figure: &Figure) -> TrainConfig {
+    quicker(arguments, TrainConfig::of(figure))
 }
 
 /// A recipe with the seed and the haste that were asked for.

@@ -3,7 +3,7 @@
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
-use super::{Anchor, Figure, FigureError, Joint, Side};
+use super::{Anchor, Figure, FigureError, Joint, Side, Views};
 use crate::names;
 
 /// More joints than any figure can be drawn with: a limit for files from elsewhere.
@@ -15,6 +15,9 @@ const MAX_PATH: usize = 1024;
 pub(super) struct FigureFile {
     name: String,
     root: String,
+    /// Named only where they are not the usual ones.
+    #[serde(default, skip_serializing_if = "Views::are_usual")]
+    views: Views,
     joints: Vec<JointEntry>,
     path: Vec<String>,
     bones: Vec<(String, String)>,
@@ -37,6 +40,7 @@ impl From<Figure> for FigureFile {
         let name = |j: usize| figure.joints[j].name.clone();
         Self {
             root: name(figure.root),
+            views: figure.views,
             joints: figure
                 .joints
                 .iter()
@@ -81,6 +85,9 @@ impl TryFrom<FigureFile> for Figure {
         check.tree(&bones)?;
         check.path_follows_bones(&path, &bones)?;
         check.template_and_anchors(&bones)?;
+        if let Some(fault) = file.views.fault() {
+            return check.wrong(fault);
+        }
         let (root, mirror) = (check.index(&file.root)?, check.mirrors()?);
         let template = file.joints.iter().map(|j| Vec2::from(j.template)).collect();
         let joints = file
@@ -97,6 +104,7 @@ impl TryFrom<FigureFile> for Figure {
             joints,
             path,
             bones,
+            views: file.views,
             template,
             root,
             mirror,

@@ -2,6 +2,7 @@
 
 mod error;
 mod file;
+mod views;
 
 use std::sync::LazyLock;
 
@@ -10,15 +11,18 @@ use serde::{Deserialize, Serialize};
 
 pub use error::FigureError;
 use file::FigureFile;
+pub use views::Views;
 
 use crate::names;
 
 const HUMAN_RON: &str = include_str!("../../figures/human.ron");
+const HORSE_RON: &str = include_str!("../../figures/horse.ron");
 
-static HUMAN: LazyLock<Figure> = LazyLock::new(|| {
-    // Not input: the text is compiled in, and a unit test loads it.
-    Figure::from_ron(HUMAN_RON).expect("the embedded human figure is valid")
-});
+// Not input: the texts are compiled in, and unit tests load them.
+static HUMAN: LazyLock<Figure> =
+    LazyLock::new(|| Figure::from_ron(HUMAN_RON).expect("the embedded human figure is valid"));
+static HORSE: LazyLock<Figure> =
+    LazyLock::new(|| Figure::from_ron(HORSE_RON).expect("the embedded horse figure is valid"));
 
 /// Which half of the body a joint belongs to, from the figure's own point of view.
 ///
@@ -57,7 +61,7 @@ pub struct Joint {
 
 /// A kind of articulated body: what is drawn, in which order, and how it is built.
 ///
-/// Made by [`Figure::human`], [`Figure::from_ron`] or any serde format; all of them validate. Joints are
+/// Made by [`Figure::human`], [`Figure::horse`], [`Figure::from_ron`] or any serde format; all of them validate. Joints are
 /// referred to by their index in [`joints`](Self::joints), in files by their name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "FigureFile", into = "FigureFile")]
@@ -72,7 +76,9 @@ pub struct Figure {
     pub path: Vec<usize>,
     /// Which joints are joined by a line. Together they are a tree over all joints.
     pub bones: Vec<[usize; 2]>,
-    /// The figure at rest seen from the front: one point per joint, metres, x right, y up.
+    /// From where the figure is usually drawn.
+    pub views: Views,
+    /// The figure at rest in its usual view: one point per joint, metres, x right, y up.
     pub template: Vec<Vec2>,
     /// The joint at which decoded meshes are centred.
     pub root: usize,
@@ -83,6 +89,16 @@ impl Figure {
     /// The human: 11 joints, a path of 17 points.
     pub fn human() -> &'static Self {
         &HUMAN
+    }
+
+    /// The horse: 12 joints, a path of 20 points.
+    pub fn horse() -> &'static Self {
+        &HORSE
+    }
+
+    /// The figures of this crate.
+    pub fn shipped() -> [&'static Self; 2] {
+        [Self::human(), Self::horse()]
     }
 
     /// Reads a figure from RON text (the form of `figures/human.ron` in this crate).
@@ -187,11 +203,57 @@ mod tests {
     }
 
     #[test]
+    fn the_horse_is_the_one_of_the_paper_seen_from_its_right() {
+        let horse = Figure::horse();
+        assert_eq!(
+            (horse.joint_count(), horse.path_len(), horse.input_len()),
+            (12, 20, 40)
+        );
+        assert_eq!(horse.joints[horse.root].name, "hip");
+        let path: Vec<&str> = horse
+            .path
+            .iter()
+            .map(|&j| horse.joints[j].name.as_str())
+            .collect();
+        let expected = "forehead shoulder knee_fr foot_fr knee_fr shoulder knee_fl foot_fl knee_fl shoulder hip knee_br foot_br knee_br hip knee_bl foot_bl knee_bl hip tail";
+        assert_eq!(path.join(" "), expected);
+        let at = |name: &str| horse.template[horse.joint_index(name).unwrap()];
+        assert!(at("forehead").x > at("shoulder").x && at("hip").x > at("tail").x);
+        for (i, joint) in horse.joints.iter().enumerate() {
+            let mirror = horse.mirror_of(i);
+            assert_eq!(horse.mirror_of(mirror), i);
+            assert_eq!(mirror == i, joint.side == Side::Center, "{}", joint.name);
+        }
+        let pair =
+            |a, b| horse.mirror_of(horse.joint_index(a).unwrap()) == horse.joint_index(b).unwrap();
+        assert!(pair("knee_fr", "knee_fl") && pair("foot_br", "foot_bl"));
+        assert!(horse.views.both_ways && !Figure::human().views.both_ways);
+    }
+
+    #[test]
     fn ron_and_json_round_trip() {
-        let human = Figure::human();
-        assert_eq!(&Figure::from_ron(&human.to_ron().unwrap()).unwrap(), human);
-        let json = serde_json::to_string(human).unwrap();
-        assert_eq!(&serde_json::from_str::<Figure>(&json).unwrap(), human);
+        for figure in Figure::shipped() {
+            let again = Figure::from_ron(&figure.to_ron().unwrap()).unwrap();
+            assert_eq!(&again, figure);
+            let json = serde_json::to_string(figure).unwrap();
+            assert_eq!(&serde_json::from_str::<Figure>(&json).unwrap(), figure);
+        }
+        // What is as usual is not written: files stay as they were before there were views.
+        assert!(
+            !serde_json::to_string(Figure::human())
+                .unwrap()
+                .contains("views")
+        );
+    }
+
+    #[test]
+    fn views_beyond_a_circle_are_refused() {
+        let text = HORSE_RON.replace("yaw_deg: 65.0", "yaw_deg: 365.0");
+        let message = Figure::from_ron(&text).unwrap_err().to_string();
+        assert!(
+            message.contains("yaw_deg") && message.contains("365"),
+            "{message}"
+        );
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use glam::{Mat3, Quat};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
+use stick3d_figure::figure::Views;
 
 use super::normal_pair;
 
@@ -12,6 +13,17 @@ use super::normal_pair;
 pub enum Rotations {
     /// The 21 of the paper (section 4.1): about y from -90° to 90° in steps of 30°, about z by -45°, 0° and 45°.
     Paper,
+    /// As [`Rotations::Continuous`]; half of the bodies are turned about, so that they face the other way.
+    BothWays {
+        /// About y, from the figure's usual view or its back.
+        yaw_deg: f32,
+        /// About z, in the plane of the sketch.
+        roll_deg: f32,
+        /// About x: toward the viewer.
+        pitch_deg: f32,
+        /// As in [`Rotations::Continuous`].
+        upright_share: f32,
+    },
     /// Any within limits, uniformly, degrees either way.
     Continuous {
         /// About y, the body's own long axis: which way it faces.
@@ -27,21 +39,41 @@ pub enum Rotations {
 }
 
 impl Rotations {
-    /// The turns of the shipped models.
-    pub const SHIPPED: Self = Self::Continuous {
-        yaw_deg: 90.0,
-        roll_deg: 45.0,
-        pitch_deg: 10.0,
-        upright_share: 0.3,
-    };
+    /// The turns that a figure is usually drawn in: those that it is trained with.
+    #[must_use]
+    pub fn of(views: &Views) -> Self {
+        let Views {
+            yaw_deg,
+            both_ways,
+            roll_deg,
+            pitch_deg,
+            upright_share,
+        } = *views;
+        if both_ways {
+            Self::BothWays {
+                yaw_deg,
+                roll_deg,
+                pitch_deg,
+                upright_share,
+            }
+        } else {
+            Self::Continuous {
+                yaw_deg,
+                roll_deg,
+                pitch_deg,
+                upright_share,
+            }
+        }
+    }
 
-    /// The turns that models are measured with: uniform within the limits of [`Rotations::SHIPPED`].
-    pub const TEST: Self = Self::Continuous {
-        yaw_deg: 90.0,
-        roll_deg: 45.0,
-        pitch_deg: 10.0,
-        upright_share: 0.0,
-    };
+    /// The turns that models of a figure are measured with: uniform within the limits of [`Rotations::of`].
+    #[must_use]
+    pub fn test_of(views: &Views) -> Self {
+        Self::of(&Views {
+            upright_share: 0.0,
+            ..*views
+        })
+    }
 
     /// The paper's 21 turns.
     #[must_use]
@@ -50,6 +82,18 @@ impl Rotations {
         let yaws = (-3..=3).map(|step| 30.0 * step as f32);
         yaws.flat_map(|yaw| rolls.map(|roll| rotation(yaw, 0.0, roll)))
             .collect()
+    }
+
+    /// The paper's 21 turns, and for a figure that is drawn facing both ways as many of its other side.
+    #[must_use]
+    pub fn paper_list_of(views: &Views) -> Vec<Quat> {
+        let list = Self::paper_list();
+        if !views.both_ways {
+            return list;
+        }
+        let about = |turn: &Quat| *turn * Quat::from_rotation_y(std::f32::consts::PI);
+        let others: Vec<Quat> = list.iter().map(about).collect();
+        [list, others].concat()
     }
 
     /// Draws one.
@@ -73,6 +117,25 @@ impl Rotations {
                     roll = (10.0 * normal_pair(rng)[0]).clamp(-roll_deg, roll_deg);
                 }
                 rotation(yaw, pitch, roll)
+            }
+            Self::BothWays {
+                yaw_deg,
+                roll_deg,
+                pitch_deg,
+                upright_share,
+            } => {
+                let one_way = Self::Continuous {
+                    yaw_deg,
+                    roll_deg,
+                    pitch_deg,
+                    upright_share,
+                };
+                let about = if rng.random::<bool>() {
+                    std::f32::consts::PI
+                } else {
+                    0.0
+                };
+                one_way.sample(rng) * Quat::from_rotation_y(about)
             }
         }
     }
@@ -103,6 +166,7 @@ pub(crate) fn turn_coefficients(turn: Quat, coefficients: &[f32], output: &mut [
 #[cfg(test)]
 mod tests {
     use glam::Vec3;
+    use stick3d_figure::figure::Figure;
 
     use super::*;
     use crate::dataset::random;
@@ -130,11 +194,30 @@ mod tests {
     fn shipped_turns_stay_in_their_limits() {
         let mut rng = random(2, "test", 0);
         for _ in 0..1000 {
-            let turn = Rotations::SHIPPED.sample(&mut rng);
+            let turn = Rotations::of(&Figure::human().views).sample(&mut rng);
             let (facing, up) = (turn * Vec3::Z, turn * Vec3::Y);
             assert!(facing.z > -0.2, "he never shows his back: {facing}");
             assert!(up.y > 0.69, "{up}");
         }
+    }
+
+    #[test]
+    fn a_horse_shows_either_side_and_never_its_back() {
+        let mut rng = random(3, "test", 0);
+        let mut rightward = 0;
+        for _ in 0..1000 {
+            let turn = Rotations::of(&Figure::horse().views).sample(&mut rng);
+            let (forward, up) = (turn * Vec3::X, turn * Vec3::Y);
+            assert!(up.y > 0.8, "{up}");
+            assert!(forward.x.abs() > 0.25, "{forward}");
+            rightward += usize::from(forward.x > 0.0);
+        }
+        assert!((450..550).contains(&rightward), "{rightward}");
+        assert_eq!(Rotations::paper_list_of(&Figure::horse().views).len(), 42);
+        assert_eq!(
+            Rotations::paper_list_of(&Figure::human().views),
+            Rotations::paper_list()
+        );
     }
 
     #[test]

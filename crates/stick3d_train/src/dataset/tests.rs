@@ -164,7 +164,7 @@ fn batches_are_turned_bodies_with_their_sketches() {
     let batcher = Batcher {
         figure,
         bodies: &bodies,
-        rotations: Rotations::SHIPPED,
+        rotations: Rotations::of(&figure.views),
         augmentation,
         batch_size: 3,
         seed: 9,

@@ -25,7 +25,7 @@ impl Baseline {
         figure: &Figure,
         bodies: impl IntoIterator<Item = (Vec<Vec3>, Vec<Vec3>)>,
     ) -> Result<Self, EvalError> {
-        let turns = Rotations::paper_list();
+        let turns = Rotations::paper_list_of(&figure.views);
         let (mut meshes, mut inputs) = (vec![], vec![]);
         for (mesh, joints) in bodies {
             meshes.push(mesh);

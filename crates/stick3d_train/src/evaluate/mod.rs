@@ -1,12 +1,12 @@
 //! Measuring a model on poses it never saw.
 //!
 //! Test cases are poses from the sampler with a seed of its own, and the library poses (or the registered meshes) that
-//! training left out, each turned at random ([`Rotations::TEST`](crate::dataset::Rotations::TEST)). Each is drawn four times: as it is, with joints
+//! training left out, each turned at random ([`Rotations::test_of`](crate::dataset::Rotations::test_of)). Each is drawn four times: as it is, with joints
 //! jittered, with bones scaled, with both ([`SketchNoise`]).
 //!
 //! Meshes are compared centred on the figure's root joint, without aligning rotation or scale. Only PA-MPJPE
 //! aligns, as its name says. Every figure stands beside that of the [nearest neighbour](Baseline): the mesh among the
-//! library's training poses in the paper's 21 turns whose sketch is closest.
+//! library's training poses in the paper's 21 turns (facing both ways where the figure does) whose sketch is closest.
 
 mod baseline;
 mod metrics;
@@ -261,7 +261,7 @@ impl Evaluation<'_> {
         let figure = self.figure;
         let mut rng = random(self.config.seed, "evaluation", self.rng_step);
         self.rng_step += 1;
-        let turn = Rotations::TEST.sample(&mut rng);
+        let turn = Rotations::test_of(&figure.views).sample(&mut rng);
         let truth: Vec<Vec3> = mesh.iter().map(|point| turn * *point).collect();
         let joints: Vec<Vec3> = joints.iter().map(|joint| turn * *joint).collect();
         let mut latent = vec![0.0; self.inference.latent_len()];

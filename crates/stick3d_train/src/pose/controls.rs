@@ -8,7 +8,7 @@ use super::align::neutral_rotations;
 use super::body::Body;
 use super::error::{PoseError, hint};
 use super::spec::{ControlsSpec, Half, Lateral, SwingSpec, mirrored_name, piecewise};
-use crate::rig::{Rig, Skeleton};
+use crate::rig::{Clip, Pose, Rig, Skeleton};
 
 /// One named degree of freedom.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,6 +69,7 @@ pub struct Controls {
     pub(super) turns: Vec<Vec<Turn>>,
     pub(super) swings: Vec<Swing>,
     pub(super) lateral: Lateral,
+    clips: Vec<Clip>,
     /// Per control the limb it belongs to, see [`ControlsSpec::limbs`].
     limb_of: Vec<Option<usize>>,
     limb_count: usize,
@@ -100,6 +101,7 @@ impl Controls {
             by_name: BTreeMap::new(),
             swings: Vec::new(),
             lateral: spec.lateral,
+            clips: rig.clips.clone(),
             limb_of: Vec::new(),
             limb_count: 0,
             body: Body::fit(rig, spec)?,
@@ -153,9 +155,10 @@ impl Controls {
                     let bone = self.skeleton.bone_index(&half.name(&drive.bone))?;
                     let axis = half
                         .axis(drive.axis, spec.lateral)
-                        .try_normalize().ok_or_else(|| {
-                        PoseError::inconsistent(control.name.clone(), "an axis has no length")
-                    })?;
+                        .try_normalize()
+                        .ok_or_else(|| {
+                            PoseError::inconsistent(control.name.clone(), "an axis has no length")
+                        })?;
                     self.turns[bone].push(Turn {
                         control: index,
                         axis,
@@ -290,6 +293,29 @@ impl Controls {
         } else {
             Ok(found)
         }
+    }
+
+    /// A moment of one of the rig's own clips.
+    pub(super) fn clip_pose(
+        &self,
+        name: &str,
+        time_s: f32,
+        place: &str,
+    ) -> Result<Pose, PoseError> {
+        let names = self.clips.iter().map(|clip| clip.name.as_str());
+        let clip = self.clips.iter().find(|clip| clip.name == name);
+        let clip = clip.ok_or_else(|| {
+            let why = format!("the rig has no clip `{name}`; {}", hint(name, names));
+            PoseError::inconsistent(place, why)
+        })?;
+        let inside = (0.0..=clip.duration_s()).contains(&time_s);
+        clip.sample(time_s).filter(|_| inside).ok_or_else(|| {
+            let why = format!(
+                "clip `{name}` lasts {} s and has no moment at {time_s} s",
+                clip.duration_s()
+            );
+            PoseError::inconsistent(place, why)
+        })
     }
 
     /// Everything at ease, on the ground.

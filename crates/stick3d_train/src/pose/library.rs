@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::controls::{Controls, PoseValues};
 use super::error::PoseError;
-use super::goals::{Goal, solve};
+use super::goals::{Goal, fit, solve};
 
 /// A file of poses, as written.
 #[derive(Debug, Serialize, Deserialize)]
@@ -31,10 +31,13 @@ struct PoseSpec {
     /// Whether that pose is mirrored first.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     mirrored: bool,
+    /// A moment of one of the rig's own clips to start from: its name and seconds from its beginning.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    clip: Option<(String, f32)>,
     /// Control -> degrees. A name without a side (`elbow.flexion`) sets both.
     #[serde(default)]
     values: BTreeMap<String, f32>,
-    /// Height of the lowest point above the ground, metres.
+    /// Height of the lowest point above the ground, or above where the clip has it, metres.
     #[serde(default)]
     lift_m: f32,
     /// What the pose achieves, beyond its angles.
@@ -54,6 +57,8 @@ pub struct NamedPose {
     pub values: PoseValues,
     /// The pose that this one is a plain mirror image of, else its own name.
     pub family: String,
+    /// How far the bones' heads are from the clip's that it was fitted to, on average, metres.
+    pub clip_miss_m: f32,
     /// How well its goals are met: the largest miss (decimetres, or unit direction).
     pub miss: f32,
 }
@@ -105,7 +110,14 @@ impl PoseLibrary {
                 }
             }
         }
-        values.lift_m = spec.lift_m;
+        let mut clip_miss_m = 0.0;
+        if let Some((clip, time_s)) = &spec.clip {
+            let moment = controls.clip_pose(clip, *time_s, &place)?;
+            clip_miss_m = fit(controls, &mut values, &moment);
+        } else {
+            values.lift_m = 0.0;
+        }
+        values.lift_m += spec.lift_m;
         // Both sides first, so that a single side can differ from them.
         let (pairs, singles): (Vec<_>, Vec<_>) = spec
             .values
@@ -130,6 +142,7 @@ impl PoseLibrary {
             name: spec.name.clone(),
             values,
             family: family.clone(),
+            clip_miss_m,
             miss,
         })
     }
@@ -152,6 +165,7 @@ impl PoseLibrary {
                 .map(|(i, control)| (control.name.clone(), pose.values.degrees[i]))
                 .collect(),
             lift_m: pose.values.lift_m,
+            clip: None,
             goals: Vec::new(),
             free: Vec::new(),
         });

@@ -1,6 +1,7 @@
 //! What a training run is made of.
 
 use serde::{Deserialize, Serialize};
+use stick3d_figure::figure::Figure;
 use stick3d_model::Architecture;
 use stick3d_model::architecture::LATENT_LEN;
 
@@ -84,9 +85,9 @@ pub struct LossWeights {
 }
 
 impl TrainConfig {
-    /// The recipe of the shipped human.
+    /// The recipe of the shipped models, with the views of `figure`.
     #[must_use]
-    pub fn human() -> Self {
+    pub fn of(figure: &Figure) -> Self {
         Self {
             seed: 1,
             hidden: HiddenLayers {
@@ -102,7 +103,7 @@ impl TrainConfig {
             principal_components: None,
             sampled_bodies: 40_000,
             library_repeats: 10,
-            rotations: Rotations::SHIPPED,
+            rotations: Rotations::of(&figure.views),
             augmentation: Augmentation {
                 clean_share: 0.5,
                 jitter_m: 0.04,

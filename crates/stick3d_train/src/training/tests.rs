@@ -58,7 +58,7 @@ fn config() -> TrainConfig {
         batch_size: 32,
         stages: [stage(6), stage(4), stage(4)],
         checkpoint_every: 2,
-        ..TrainConfig::human()
+        ..TrainConfig::of(Figure::human())
     }
 }
 
