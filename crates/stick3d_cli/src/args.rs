@@ -230,5 +230,8 @@ pub(crate) enum BakeCommand {
             default_value = "assets/poses/human.png"
         )]
         out: PathBuf,
+        /// Where the camera stands, degrees: 0 looks along -Z, 90 along -X
+        #[arg(long, value_name = "DEGREES", default_value_t = -35.0, allow_hyphen_values = true)]
+        yaw_deg: f32,
     },
 }

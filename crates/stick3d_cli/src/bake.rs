@@ -13,8 +13,6 @@ use crate::args::BakeCommand;
 use crate::corpus::Corpus;
 use crate::failure::{Failure, Outcome};
 
-/// Cameras of the contact sheet: between the front and the right side, degrees.
-const SHEET_VIEWS_DEG: [f32; 1] = [-35.0];
 /// Edge of one picture of the contact sheet, pixels.
 const SHEET_PICTURE_PX: u32 = 100;
 /// Poses in a row of the contact sheet.
@@ -25,13 +23,13 @@ pub(crate) fn run(command: &BakeCommand) -> Outcome {
     match command {
         BakeCommand::Human { wheel, out } => told(out, bake_human(wheel, out)),
         BakeCommand::Horse { wheel, out } => told(out, bake_horse(wheel, out)),
-        BakeCommand::Poses { body, out } => {
+        BakeCommand::Poses { body, out, yaw_deg } => {
             let corpus = Corpus::read(body)?;
             let sheet = pose_sheet(
                 &corpus.rig,
                 &corpus.controls,
                 &corpus.library,
-                &SHEET_VIEWS_DEG,
+                &[*yaw_deg],
                 SHEET_PICTURE_PX,
                 SHEET_COLUMNS,
             )

@@ -137,15 +137,17 @@ fn segments_cross(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> bool {
 mod tests {
     use proptest::prelude::*;
     use rand::Rng;
+    use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::simulate::{self, Hand, STYLES};
+    use crate::simulate::{self, HUMAN, Hand, STYLES};
 
-    fn drawing(rng: &mut impl Rng, hand: Hand) -> Vec<Stroke> {
-        let meant = simulate::on_canvas(&simulate::pose(rng), hand.height_px);
+    fn drawing(rng: &mut ChaCha8Rng, hand: Hand) -> Vec<Stroke> {
+        let figure = (HUMAN.figure)();
+        let meant = simulate::on_canvas(&(HUMAN.pose)(rng), hand.height_px);
         let style = STYLES[rng.random_range(0..STYLES.len())];
-        let cuts = simulate::cuts(rng, style);
-        simulate::draw(rng, &meant, &cuts, hand)
+        let cuts = simulate::cuts(figure, rng, style);
+        simulate::draw(figure, rng, &meant, &cuts, hand)
     }
 
     /// A zigzag of `runs` swings of `size_px`, seen from `centre`.

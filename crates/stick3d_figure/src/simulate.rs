@@ -1,4 +1,4 @@
-//! A person who draws the human, for tests: plausible poses, styles of drawing, an unsteady hand.
+//! A person who draws the shipped figures, for tests: plausible poses, styles of drawing, an unsteady hand.
 
 use glam::{Quat, Vec2, Vec3};
 use rand::{Rng, SeedableRng};
@@ -62,8 +62,106 @@ fn in_cone(rng: &mut impl Rng, axis: Vec3, max_deg: f32) -> Vec3 {
     axis * angle.cos() + side * angle.sin()
 }
 
+/// Who is drawn.
+#[derive(Clone, Copy)]
+pub(crate) struct Subject {
+    pub(crate) figure: fn() -> &'static Figure,
+    /// Joints in a random pose, metres: bones turn in three dimensions and are projected.
+    pub(crate) pose: fn(&mut ChaCha8Rng) -> Vec<Vec2>,
+    /// As `pose`, but one of those that can be read in one way only.
+    pub(crate) clear_pose: fn(&mut ChaCha8Rng) -> Vec<Vec2>,
+}
+
+impl std::fmt::Debug for Subject {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.write_str(&(self.figure)().name)
+    }
+}
+
+pub(crate) const HUMAN: Subject = Subject {
+    figure: Figure::human,
+    pose,
+    clear_pose,
+};
+
+pub(crate) const HORSE: Subject = Subject {
+    figure: Figure::horse,
+    pose: |rng| swung(Figure::horse(), rng, 32.0, |_| true),
+    clear_pose: |rng| swung(Figure::horse(), rng, 26.0, clear_legs),
+};
+
+/// The template with every bone swung out of its direction by up to `max_deg`, what hangs on it along
+/// with it, turned to the right or the left.
+fn swung(
+    figure: &Figure,
+    rng: &mut impl Rng,
+    max_deg: f32,
+    wanted: fn(&[Vec2]) -> bool,
+) -> Vec<Vec2> {
+    loop {
+        let yaw =
+            rng.random_range(-0.6..0.6) + std::f32::consts::PI * f32::from(rng.random::<bool>());
+        let mut placed: Vec<Option<(Vec3, Quat)>> = vec![None; figure.joint_count()];
+        placed[figure.root] = Some((Vec3::ZERO, Quat::from_rotation_y(yaw)));
+        for _ in 0..figure.bones.len() {
+            for &[a, b] in &figure.bones {
+                let (from, to) = match (placed[a], placed[b]) {
+                    (Some(_), None) => (a, b),
+                    (None, Some(_)) => (b, a),
+                    _ => continue,
+                };
+                let Some((at, turned)) = placed[from] else {
+                    continue;
+                };
+                let line = (figure.template[to] - figure.template[from]).extend(0.0);
+                let swing = Quat::from_rotation_arc(
+                    line.normalize(),
+                    in_cone(rng, line.normalize(), max_deg),
+                );
+                placed[to] = Some((at + turned * swing * line, turned * swing));
+            }
+        }
+        let flat: Vec<Vec2> = placed
+            .iter()
+            .flatten()
+            .map(|(at, _)| at.truncate())
+            .collect();
+        let drawable = figure
+            .bones
+            .iter()
+            .all(|&[a, b]| flat[a].distance(flat[b]) > 0.1);
+        if drawable && wanted(&flat) {
+            return flat;
+        }
+    }
+}
+
+/// Feet and knees of the horse's legs stand apart, and every knee is bent.
+fn clear_legs(points: &[Vec2]) -> bool {
+    let figure = Figure::horse();
+    let at = |name: &str| points[figure.joint_index(name).unwrap()];
+    let bent = [
+        ("shoulder", "knee_fr", "foot_fr"),
+        ("shoulder", "knee_fl", "foot_fl"),
+        ("hip", "knee_br", "foot_br"),
+        ("hip", "knee_bl", "foot_bl"),
+    ]
+    .iter()
+    .all(|&(root, knee, foot)| {
+        let (upper, lower) = (at(knee) - at(root), at(foot) - at(knee));
+        (18.0..125.0).contains(&upper.angle_to(lower).abs().to_degrees())
+            && upper.length() > 0.25
+            && lower.length() > 0.2
+    });
+    let apart = [("fr", "fl"), ("br", "bl")].iter().all(|(one, other)| {
+        at(&format!("knee_{one}")).distance(at(&format!("knee_{other}"))) > 0.2
+            && at(&format!("foot_{one}")).distance(at(&format!("foot_{other}"))) > 0.2
+    });
+    bent && apart
+}
+
 /// The joints of the human in a random pose, metres: bones turn in three dimensions and are projected.
-pub(crate) fn pose(rng: &mut impl Rng) -> Vec<Vec2> {
+fn pose(rng: &mut ChaCha8Rng) -> Vec<Vec2> {
     loop {
         let up = in_cone(rng, Vec3::Y, 25.0);
         let abdomen = Vec3::ZERO;
@@ -94,7 +192,7 @@ pub(crate) fn pose(rng: &mut impl Rng) -> Vec<Vec2> {
 
 /// As [`pose`], but one of those that can be read in one way only: limbs are visibly bent, hands are away from
 /// the neck and feet from the abdomen, nothing is much foreshortened.
-pub(crate) fn clear_pose(rng: &mut impl Rng) -> Vec<Vec2> {
+fn clear_pose(rng: &mut ChaCha8Rng) -> Vec<Vec2> {
     let limbs = [(1, 3, 4), (2, 5, 6), (1, 7, 8), (2, 9, 10)];
     loop {
         let points = pose(rng);
@@ -113,23 +211,44 @@ pub(crate) fn clear_pose(rng: &mut impl Rng) -> Vec<Vec2> {
 }
 
 /// The path indices of each stroke, first and last included.
-pub(crate) fn cuts(rng: &mut impl Rng, style: Style) -> Vec<(usize, usize)> {
+pub(crate) fn cuts(figure: &Figure, rng: &mut impl Rng, style: Style) -> Vec<(usize, usize)> {
+    let path = &figure.path;
+    let last = path.len() - 1;
+    let degree = |k: usize| {
+        figure
+            .bones
+            .iter()
+            .filter(|bone| bone.contains(&path[k]))
+            .count()
+    };
+    // A step is a way back when its far end was visited before.
+    let forth = |k: usize| !path[..=k].contains(&path[k + 1]);
     match style {
-        Style::OneLine => vec![(0, 16)],
-        Style::StrokePerBone => [0, 1, 2, 5, 6, 9, 10, 11, 14, 15]
+        Style::OneLine => vec![(0, last)],
+        Style::StrokePerBone => (0..last)
+            .filter(|&k| forth(k))
             .map(|k| (k, k + 1))
-            .into(),
-        Style::StrokePerBoneWithRetraces => (0..16).map(|k| (k, k + 1)).collect(),
-        Style::StrokePerLimb => vec![(0, 1), (1, 3), (5, 7), (9, 10), (10, 12), (14, 16)],
+            .collect(),
+        Style::StrokePerBoneWithRetraces => (0..last).map(|k| (k, k + 1)).collect(),
+        Style::StrokePerLimb => {
+            let mut strokes: Vec<(usize, usize)> = Vec::new();
+            for k in (0..last).filter(|&k| forth(k)) {
+                match strokes.last_mut() {
+                    Some((_, end)) if *end == k && degree(k) <= 2 => *end = k + 1,
+                    _ => strokes.push((k, k + 1)),
+                }
+            }
+            strokes
+        }
         Style::Mix => {
-            // Lift at random joints; skip a way back only after lifting at a hand or foot.
+            // Lift at random joints; skip a way back only after lifting at the end of a limb.
             let mut strokes = Vec::new();
             let mut start = 0;
-            for k in 1..16 {
+            for k in 1..last {
                 if rng.random_bool(0.35) {
                     strokes.push((start, k));
                     start = k;
-                    if [3, 7, 12].contains(&k) && rng.random_bool(0.6) {
+                    if degree(k) == 1 && rng.random_bool(0.6) {
                         start = k + 2;
                     }
                 }
@@ -142,7 +261,7 @@ pub(crate) fn cuts(rng: &mut impl Rng, style: Style) -> Vec<(usize, usize)> {
                 a < b
             });
             let start = start.max(strokes.last().map_or(0, |s| s.1));
-            strokes.push((start, 16));
+            strokes.push((start, last));
             strokes
         }
     }
@@ -150,12 +269,13 @@ pub(crate) fn cuts(rng: &mut impl Rng, style: Style) -> Vec<(usize, usize)> {
 
 /// The strokes of a drawing of `joints_px`.
 pub(crate) fn draw(
+    figure: &Figure,
     rng: &mut impl Rng,
     joints_px: &[Vec2],
     cuts: &[(usize, usize)],
     hand: Hand,
 ) -> Vec<Stroke> {
-    let path = &Figure::human().path;
+    let path = &figure.path;
     let mut time_s = 0.0;
     let wobble = |rng: &mut ChaCha8Rng, size: f32| {
         Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * size
@@ -193,4 +313,35 @@ pub(crate) fn on_canvas(pose: &[Vec2], height_px: f32) -> Vec<Vec2> {
     pose.iter()
         .map(|p| *p * scale + Vec2::new(400.0, 380.0))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_are_cut_where_a_person_lifts_the_pen() {
+        let cut = |figure, style| cuts(figure, &mut rng(1), style);
+        let human = Figure::human();
+        assert_eq!(
+            cut(human, Style::StrokePerLimb),
+            [(0, 1), (1, 3), (5, 7), (9, 10), (10, 12), (14, 16)]
+        );
+        assert_eq!(
+            cut(human, Style::StrokePerBone),
+            [0, 1, 2, 5, 6, 9, 10, 11, 14, 15].map(|k| (k, k + 1))
+        );
+        assert_eq!(
+            cut(Figure::horse(), Style::StrokePerLimb),
+            [
+                (0, 1),
+                (1, 3),
+                (5, 7),
+                (9, 10),
+                (10, 12),
+                (14, 16),
+                (18, 19)
+            ]
+        );
+    }
 }

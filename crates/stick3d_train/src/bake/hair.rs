@@ -134,7 +134,26 @@ pub(super) fn mane(point: DVec3) -> f64 {
     let on_right = fall + locks * smoothstep(along / 0.1) - depth;
     let on_left = 0.03 - depth;
     let side = if point.z > 0.0 { on_right } else { on_left };
-    side.min(3.0 * ends)
+    side.min(ends).min(off_the_ear(point))
+}
+
+/// How far a point is from the nearer ear, which stands in the mane's way.
+fn off_the_ear(point: DVec3) -> f64 {
+    const EAR: [DVec3; 2] = [DVec3::new(1.08, 1.86, 0.085), DVec3::new(1.12, 2.06, 0.10)];
+    const GIRTH_M: f64 = 0.045;
+    let mirrored = DVec3::new(point.x, point.y, point.z.abs());
+    let line = EAR[1] - EAR[0];
+    let along = (mirrored - EAR[0]).dot(line) / line.length_squared();
+    mirrored.distance(EAR[0] + line * along.clamp(0.0, 1.0)) - GIRTH_M
+}
+
+/// How much longer an edge counts when the longest are split: locks end in fine points.
+pub(super) fn detail(point: DVec3) -> f64 {
+    if point.z > 0.0 && mane(point).abs() < 0.05 {
+        2.2
+    } else {
+        1.0
+    }
 }
 
 /// How far hair stands off the skin at its thickest, metres.

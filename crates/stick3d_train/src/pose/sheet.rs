@@ -9,7 +9,7 @@ use crate::render::{Camera, RenderMesh, contact_sheet, render};
 use crate::rig::{Rig, RigError};
 
 /// Draws all poses of a library, each seen from several directions `views` (yaw of the camera, degrees;
-/// 0 = front, 90 = the body's left), every picture `size` pixels square, `columns` poses in a row.
+/// 0 looks along -Z, 90 along -X), every picture `size` pixels square, `columns` poses in a row.
 ///
 /// # Errors
 /// [`RigError::Inconsistent`] for a rig that [`Rig::validate`] refuses.
