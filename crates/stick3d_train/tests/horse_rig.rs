@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
 use stick3d_figure::Figure;
-use stick3d_train::bake::{bake_horse, horse, sha256_hex};
+use stick3d_model::digest::sha256_hex;
+use stick3d_train::bake::{bake_horse, horse};
 use stick3d_train::rig::{Pose, Rig, regressor};
 
 fn rigs() -> PathBuf {

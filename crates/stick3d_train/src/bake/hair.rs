@@ -128,7 +128,7 @@ pub(super) fn mane(point: DVec3) -> f64 {
         .map(|p| (p[1].0 - p[0].0).hypot(p[1].1 - p[0].1))
         .sum::<f64>();
     let ends = (along - 0.01).min(length - along + 0.005);
-    let locks = 0.030 * (along * 41.0).sin() + 0.016 * (along * 97.0 + 1.0).sin();
+    let locks = 0.024 * (along * 41.0).sin() + 0.010 * (along * 67.0 + 1.0).sin();
     let fall =
         0.165 * smoothstep(along / 0.18) * (0.75 + 0.25 * smoothstep((length - along) / 0.2));
     let on_right = fall + locks * smoothstep(along / 0.1) - depth;

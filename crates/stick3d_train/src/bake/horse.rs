@@ -11,7 +11,7 @@ use super::subdivide::{Cage, edge};
 use super::surface::{Surface, mix, strongest, weighted_sum};
 use super::wheel::Wheel;
 use super::{BakeError, quadruped};
-use crate::rig::{Rig, RigFile, Skeleton, Weld};
+use crate::rig::{Bone, Rig, RigFile, Skeleton, Weld};
 
 /// The sha256 of the wheel that the recipe reads.
 pub const WHEEL_SHA256: &str = "d111ffc9782f09872846b09ac7868d41e126ef72e3153d9d0173d401be3277a3";
@@ -184,6 +184,27 @@ fn dress_cage(cage: &mut Cage, skeleton: &mut Skeleton) {
         &mut cage.surface.influences,
     );
     cage.creases = hoof_edges(cage);
+    stiffen_hooves(cage, skeleton);
+}
+
+/// Lets horn follow the hooves' bones alone.
+fn stiffen_hooves(cage: &mut Cage, skeleton: &Skeleton) {
+    for (corners, &tag) in cage.surface.triangles.iter().zip(&cage.tags) {
+        if piece(tag) != Piece::Hoof {
+            continue;
+        }
+        for &corner in corners {
+            let point = cage.surface.positions[corner as usize].as_vec3();
+            let far = |bone: &Bone| bone.head.distance_squared(point);
+            let nearest = (0u16..)
+                .zip(&skeleton.bones)
+                .filter(|(_, bone)| bone.name.contains("hoof"))
+                .min_by(|a, b| far(a.1).total_cmp(&far(b.1)));
+            if let Some((bone, _)) = nearest {
+                cage.surface.influences[corner as usize] = vec![(bone, 1.0)];
+            }
+        }
+    }
 }
 
 /// The rims of the hooves: where horn meets coat, and round the sole.

@@ -152,14 +152,14 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::pose::{HUMAN_CONTROLS, PoseLibrary, PoseSampler, SampleKind};
+    use crate::pose::{PoseLibrary, PoseSampler, SHIPPED, SampleKind};
     use crate::rig::Rig;
 
     static RIG: LazyLock<Rig> = LazyLock::new(|| {
         Rig::from_glb(include_bytes!("../../../../assets/rigs/human.glb")).unwrap()
     });
     static CONTROLS: LazyLock<Controls> =
-        LazyLock::new(|| Controls::from_ron(HUMAN_CONTROLS, &RIG).unwrap());
+        LazyLock::new(|| Controls::from_ron(SHIPPED[0].controls, &RIG).unwrap());
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(12))]

@@ -12,7 +12,6 @@ use super::controls::{Controls, PoseValues};
 use super::error::PoseError;
 use super::posing::BoneTransforms;
 use super::spec::Half;
-use crate::rig::Pose;
 
 /// Rounds of the solver. Authored poses start close and need about ten.
 const ROUNDS: usize = 40;
@@ -20,8 +19,6 @@ const ROUNDS: usize = 40;
 const STEP_DEG: f32 = 0.2;
 /// Cost of leaving the authored angles, per degree: 30 degrees weigh like 3 mm.
 const STAY_PER_DEG: f32 = 0.001;
-/// A clip's pose whose lowest part is less high than this, metres, is on the ground.
-const ON_GROUND_M: f32 = 0.03;
 /// Cost of a metre, against one of a unit direction.
 const PER_METRE: f32 = 10.0;
 
@@ -70,12 +67,7 @@ enum Bound {
         toward: Vec3,
     },
     Balance(Vec<usize>),
-    /// Bone by bone as near as possible to transforms of the same skeleton, root heads together.
-    Follow(BoneTransforms),
 }
-
-/// Where the points are that a followed bone is compared at, beside its head: offsets at rest, metres.
-const FOLLOWED_M: [Vec3; 2] = [Vec3::new(0.0, -0.15, 0.0), Vec3::new(0.15, 0.0, 0.0)];
 
 impl Goal {
     fn bind(&self, controls: &Controls, into: &mut Vec<Bound>) -> Result<(), PoseError> {
@@ -161,20 +153,6 @@ impl Bound {
                     - support.sum::<Vec3>() / parts.len().max(1) as f32;
                 out.extend([miss.x * PER_METRE * 0.5, miss.z * PER_METRE * 0.5]);
             }
-            Self::Follow(followed) => {
-                let (Some(root), Some(followed_root)) = (transforms.first(), followed.first())
-                else {
-                    return;
-                };
-                for (own, other) in transforms.iter().zip(followed) {
-                    let head = (own.1 - root.1) - (other.1 - followed_root.1);
-                    out.extend((head * PER_METRE).to_array());
-                    for offset in FOLLOWED_M {
-                        let miss = head + own.0 * offset - other.0 * offset;
-                        out.extend((miss * PER_METRE).to_array());
-                    }
-                }
-            }
         }
     }
 }
@@ -191,34 +169,11 @@ pub(super) fn solve(
     for goal in goals {
         goal.bind(controls, &mut bound)?;
     }
-    Ok(minimise(controls, values, &bound, free))
-}
-
-/// Finds the control values whose pose is most like `pose`, starting from `values`, and how high it
-/// stands. Returns how far the bones' heads are off on average, metres.
-pub(super) fn fit(controls: &Controls, values: &mut PoseValues, pose: &Pose) -> f32 {
-    let followed = controls.transforms(pose);
-    let free: Vec<usize> = (0..values.degrees.len()).collect();
-    minimise(controls, values, &[Bound::Follow(followed.clone())], &free);
-    let lowest = controls.body().lowest_m(&followed);
-    values.lift_m = if lowest > ON_GROUND_M { lowest } else { 0.0 };
-    let reached = controls.transforms(&controls.rotations(values));
-    let (Some(root), Some(followed_root)) = (reached.first(), followed.first()) else {
-        return 0.0;
-    };
-    let off = reached
-        .iter()
-        .zip(&followed)
-        .map(|(own, other)| (own.1 - root.1).distance(other.1 - followed_root.1));
-    off.sum::<f32>() / followed.len() as f32
-}
-
-fn minimise(controls: &Controls, values: &mut PoseValues, bound: &[Bound], free: &[usize]) -> f32 {
     let start = values.clone();
     let evaluate = |values: &PoseValues| -> DVector<f32> {
         let transforms = controls.transforms(&controls.rotations(values));
         let mut out = Vec::new();
-        for goal in bound {
+        for goal in &bound {
             goal.residuals(controls, &transforms, &mut out);
         }
         for &index in free {
@@ -259,5 +214,5 @@ fn minimise(controls: &Controls, values: &mut PoseValues, bound: &[Bound], free:
             }
         }
     }
-    residual.rows(0, residual.len() - free.len()).amax()
+    Ok(residual.rows(0, residual.len() - free.len()).amax())
 }

@@ -9,7 +9,10 @@ use serde::{Deserialize, Serialize};
 
 use super::controls::{Controls, PoseValues};
 use super::error::PoseError;
-use super::goals::{Goal, fit, solve};
+use super::goals::{Goal, solve};
+
+/// A clip's pose whose lowest part is less high than this, metres, is on the ground.
+const ON_GROUND_M: f32 = 0.03;
 
 /// A file of poses, as written.
 #[derive(Debug, Serialize, Deserialize)]
@@ -57,8 +60,9 @@ pub struct NamedPose {
     pub values: PoseValues,
     /// The pose that this one is a plain mirror image of, else its own name.
     pub family: String,
-    /// How far the bones' heads are from the clip's that it was fitted to, on average, metres.
-    pub clip_miss_m: f32,
+    /// How far the bones are turned from the moment of a clip that it was fitted to: root of the mean
+    /// square, radians.
+    pub clip_miss_rad: f32,
     /// How well its goals are met: the largest miss (decimetres, or unit direction).
     pub miss: f32,
 }
@@ -110,10 +114,13 @@ impl PoseLibrary {
                 }
             }
         }
-        let mut clip_miss_m = 0.0;
+        let mut clip_miss_rad = 0.0;
         if let Some((clip, time_s)) = &spec.clip {
             let moment = controls.clip_pose(clip, *time_s, &place)?;
-            clip_miss_m = fit(controls, &mut values, &moment);
+            (values, clip_miss_rad) = controls.fit_from(&moment, &values);
+            if values.lift_m < ON_GROUND_M {
+                values.lift_m = 0.0;
+            }
         } else {
             values.lift_m = 0.0;
         }
@@ -142,7 +149,7 @@ impl PoseLibrary {
             name: spec.name.clone(),
             values,
             family: family.clone(),
-            clip_miss_m,
+            clip_miss_rad,
             miss,
         })
     }
