@@ -24,3 +24,11 @@ pub const SHIPPED: [ShippedBody; 2] = [
         poses: include_str!("../../../../assets/poses/horse.ron"),
     },
 ];
+
+impl ShippedBody {
+    /// The shipped body called `name`.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        SHIPPED.into_iter().find(|body| body.name == name)
+    }
+}

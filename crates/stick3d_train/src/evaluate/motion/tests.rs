@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use super::*;
-use crate::pose::{Controls, HUMAN_CONTROLS, HUMAN_POSES, PoseLibrary};
+use crate::pose::{Controls, PoseLibrary, ShippedBody};
 use crate::training::Quiet;
 
 static RIG: LazyLock<Rig> = LazyLock::new(|| {
@@ -11,8 +11,9 @@ static RIG: LazyLock<Rig> = LazyLock::new(|| {
 });
 
 fn named(names: &[&str]) -> Vec<(String, Pose)> {
-    let controls = Controls::from_ron(HUMAN_CONTROLS, &RIG).unwrap();
-    let library = PoseLibrary::from_ron(HUMAN_POSES, &controls).unwrap();
+    let human = ShippedBody::named("human").unwrap();
+    let controls = Controls::from_ron(human.controls, &RIG).unwrap();
+    let library = PoseLibrary::from_ron(human.poses, &controls).unwrap();
     let pose = |name: &&str| {
         let values = &library.get(name).unwrap().values;
         ((*name).to_owned(), controls.pose(values))
