@@ -34,7 +34,7 @@ pub(crate) fn train(arguments: &TrainArguments, folder: &Path, figure: &Figure) 
     let start = Instant::now();
     let (set, said) = read(folder, &arguments.set, figure)?;
     println!("{said}");
-    let recipe = TrainConfig::meshes(set.meshes.len(), set.vertex_count());
+    let recipe = TrainConfig::meshes(figure, set.meshes.len(), set.vertex_count());
     let config = quicker(arguments, recipe);
     let input = MeshTrainInput {
         figure,

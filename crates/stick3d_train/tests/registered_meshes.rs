@@ -159,7 +159,7 @@ fn config() -> TrainConfig {
         library_repeats: 20,
         batch_size: 20,
         stages: [stage(3), stage(3), stage(3)],
-        ..TrainConfig::human()
+        ..TrainConfig::of(Figure::human())
     }
 }
 

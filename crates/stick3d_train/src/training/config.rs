@@ -139,17 +139,17 @@ impl TrainConfig {
         }
     }
 
-    /// A recipe for `count` registered meshes: as the human's, on principal components, with every mesh so often in an
-    /// epoch, each time turned otherwise, that the steps are about a third of the human's.
+    /// A recipe for `count` registered meshes of `figure`: as the shipped models', on principal components, with every mesh so often in an
+    /// epoch, each time turned otherwise, that the steps are about a third of theirs.
     #[must_use]
-    pub fn meshes(count: usize, vertex_count: usize) -> Self {
+    pub fn meshes(figure: &Figure, count: usize, vertex_count: usize) -> Self {
         const BODIES: usize = 16_000;
         const BASIS_BYTES: usize = 16_000_000;
         Self {
             principal_components: Some((BASIS_BYTES / 4 / vertex_count.max(1)).clamp(8, 256)),
             sampled_bodies: 0,
             library_repeats: BODIES.div_ceil(count.max(1)),
-            ..Self::human()
+            ..Self::of(figure)
         }
     }
 
