@@ -58,10 +58,6 @@ impl Views {
     }
 
     /// Whether they are the usual ones.
-    #[expect(
-        clippy::trivially_copy_pass_by_ref,
-        reason = "serde asks for a reference"
-    )]
     pub(super) fn are_usual(&self) -> bool {
         *self == Self::default()
     }
