@@ -89,7 +89,7 @@ impl Animation {
             let steps = ((pair[1] - pair[0]) / LONGEST_STEP_S - 0.01)
                 .ceil()
                 .max(1.0);
-            if !(steps < MOST_POSES as f32) || times.len() > MOST_POSES {
+            if steps.is_nan() || steps >= MOST_POSES as f32 || times.len() > MOST_POSES {
                 return Err(RigError::Unsupported {
                     what: format!("the overlong animation `{}`", self.name),
                 });
@@ -163,7 +163,10 @@ fn read_track(source: &Source, channel: &Channel<'_>) -> Result<Option<Track>, S
             values.len()
         ));
     }
-    if times_s.windows(2).any(|pair| !(pair[0] < pair[1])) {
+    if times_s
+        .windows(2)
+        .any(|pair| pair[0].is_nan() || pair[1].is_nan() || pair[0] >= pair[1])
+    {
         return Err("its key times do not ascend".into());
     }
     let finite = times_s.iter().all(|time| time.is_finite() && *time >= 0.0)

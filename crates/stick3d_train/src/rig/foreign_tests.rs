@@ -7,6 +7,7 @@ use glam::{Mat4, Quat, Vec3};
 use serde_json::{Value, json};
 
 use super::{Pose, Rig, RigError, RigFile, Weld};
+use stick3d_model::files::write_atomically;
 
 /// A glTF under construction.
 struct Foreign {
@@ -509,19 +510,19 @@ fn text_with_embedded_and_with_separate_buffers_is_the_same_rig() {
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("column.gltf");
-    std::fs::write(folder.path().join("column data.bin"), &file.bytes).unwrap();
+    write_atomically(&folder.path().join("column data.bin"), &file.bytes).unwrap();
     let separate = file.finished(Some("column%20data.bin".into()));
-    std::fs::write(&path, serde_json::to_vec(&separate).unwrap()).unwrap();
+    write_atomically(&path, &serde_json::to_vec(&separate).unwrap()).unwrap();
     assert_eq!(RigFile::read(&path, Weld::default()).unwrap(), expected);
 
     let outside = file.finished(Some("../column data.bin".into()));
-    std::fs::write(&path, serde_json::to_vec(&outside).unwrap()).unwrap();
+    write_atomically(&path, &serde_json::to_vec(&outside).unwrap()).unwrap();
     let error = RigFile::read(&path, Weld::default())
         .unwrap_err()
         .to_string();
     assert!(error.contains("../column data.bin"), "{error}");
     let absent = file.finished(Some("absent.bin".into()));
-    std::fs::write(&path, serde_json::to_vec(&absent).unwrap()).unwrap();
+    write_atomically(&path, &serde_json::to_vec(&absent).unwrap()).unwrap();
     let error = RigFile::read(&path, Weld::default())
         .unwrap_err()
         .to_string();
