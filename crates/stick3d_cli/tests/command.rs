@@ -280,7 +280,11 @@ fn meshes_and_rigs_do_not_mix() {
     let init = [
         "figure", "init", "--mesh", "m.off", "--out", "f.ron", "--preset",
     ];
-    refused(2, &[&init[..], &["dragon"]].concat(), &["dragon", "scape"]);
+    refused(
+        2,
+        &[&init[..], &["dragon"]].concat(),
+        &["dragon", "scape", "tosca-horse"],
+    );
 }
 
 #[test]

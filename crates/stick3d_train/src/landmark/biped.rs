@@ -4,7 +4,7 @@ use glam::{Mat3, Vec3};
 
 use super::limbs::Limbs;
 use super::surface::{Ring, Surface};
-use super::{Found, LandmarkError, longest, lower};
+use super::{Found, LandmarkError, facing, longest, lower};
 
 /// Shares of the way from a toe to the crotch, which is half of the way from toe to toe.
 const FOOT: f32 = 0.16;
@@ -20,8 +20,6 @@ const HEAD: f32 = 0.5;
 const NECK: f32 = 1.06;
 /// The forehead is this much above the horizontal from the middle of the head, radians.
 const FOREHEAD_RAD: f32 = 0.3;
-/// How many vertices tell it.
-const FOREHEAD_VERTICES: usize = 12;
 
 pub(super) fn joints(surface: &Surface<'_>) -> Result<Found, LandmarkError> {
     let limbs = Limbs::find(surface, 5)?;
@@ -64,7 +62,9 @@ pub(super) fn joints(surface: &Surface<'_>) -> Result<Found, LandmarkError> {
     let (l, r) = if first_is_left { (0, 1) } else { (1, 0) };
 
     let ring = |ring: Ring| ring.vertices;
-    let forehead = forehead(surface, crown, narrowest, up, forward)?;
+    let middle = longest(surface, crown, HEAD * narrowest, "forehead")?.centre;
+    let (sin, cos) = FOREHEAD_RAD.sin_cos();
+    let forehead = facing(surface, crown, narrowest, middle, cos * forward + sin * up);
     let joints = vec![
         ("forehead", forehead),
         ("neck", ring(neck)),
@@ -98,33 +98,4 @@ fn narrowest(surface: &Surface<'_>, crown: &[f32], to_hands: f32) -> Result<f32,
     }
     best.map(|(level, _)| level)
         .ok_or(LandmarkError::NoRing { joint: "neck" })
-}
-
-/// Vertices in front of the head and a little above its middle.
-fn forehead(
-    surface: &Surface<'_>,
-    crown: &[f32],
-    narrowest: f32,
-    up: Vec3,
-    forward: Vec3,
-) -> Result<Vec<u32>, LandmarkError> {
-    let middle = longest(surface, crown, HEAD * narrowest, "forehead")?.centre;
-    let (sin, cos) = FOREHEAD_RAD.sin_cos();
-    let toward = cos * forward + sin * up;
-    let mut near: Vec<(f32, u32)> = (0_u32..)
-        .zip(crown)
-        .filter(|(_, distance)| **distance < narrowest)
-        .map(|(vertex, _)| {
-            let from_middle = surface.mesh.positions[vertex as usize] - middle;
-            (from_middle.angle_between(toward), vertex)
-        })
-        .collect();
-    near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut vertices: Vec<u32> = near
-        .iter()
-        .take(FOREHEAD_VERTICES)
-        .map(|(_, v)| *v)
-        .collect();
-    vertices.sort_unstable();
-    Ok(vertices)
 }

@@ -7,6 +7,7 @@
 
 mod biped;
 mod limbs;
+mod quadruped;
 mod surface;
 
 use glam::{Mat3, Vec2, Vec3};
@@ -21,6 +22,8 @@ use surface::{Ring, Surface};
 pub enum Preset {
     /// A person, as in the SCAPE set: the joints and the path of the human.
     Scape,
+    /// A horse, as in the TOSCA set: the joints and the path of the horse.
+    ToscaHorse,
 }
 
 /// Why joints were not found.
@@ -67,13 +70,14 @@ pub enum LandmarkError {
 
 impl Preset {
     /// All of them.
-    pub const ALL: [Self; 1] = [Self::Scape];
+    pub const ALL: [Self; 2] = [Self::Scape, Self::ToscaHorse];
 
-    /// What it is called: `scape`.
+    /// What it is called: `scape`, `tosca-horse`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Scape => "scape",
+            Self::ToscaHorse => "tosca-horse",
         }
     }
 
@@ -86,6 +90,7 @@ impl Preset {
         let surface = Surface::new(pilot);
         let (like, found) = match self {
             Self::Scape => (Figure::human(), biped::joints(&surface)?),
+            Self::ToscaHorse => (Figure::horse(), quadruped::joints(&surface)?),
         };
         let mut figure = like.clone();
         self.name().clone_into(&mut figure.name);
@@ -127,6 +132,29 @@ fn longest(
         .ok_or(LandmarkError::NoRing { joint })
 }
 
+/// Some vertices where a ray from `middle` leaves the surface, among those where a field is below `level`.
+fn facing(
+    surface: &Surface<'_>,
+    field: &[f32],
+    level: f32,
+    middle: Vec3,
+    toward: Vec3,
+) -> Vec<u32> {
+    const VERTICES: usize = 12;
+    let mut near: Vec<(f32, u32)> = (0_u32..)
+        .zip(field)
+        .filter(|(_, value)| **value < level)
+        .map(|(vertex, _)| {
+            let from_middle = surface.mesh.positions[vertex as usize] - middle;
+            (from_middle.angle_between(toward), vertex)
+        })
+        .collect();
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut vertices: Vec<u32> = near.iter().take(VERTICES).map(|(_, v)| *v).collect();
+    vertices.sort_unstable();
+    vertices
+}
+
 /// For every vertex the smaller of two values.
 fn lower(a: &[f32], b: &[f32]) -> Vec<f32> {
     a.iter().zip(b).map(|(a, b)| a.min(*b)).collect()
@@ -152,8 +180,12 @@ fn template(figure: &Figure, pilot: &TriangleMesh, axes: Mat3) -> Vec<Vec2> {
     };
     let ((low, size), (like_low, like_size)) = (bounds(&flat), bounds(&figure.template));
     let scale = like_size.y / size.y.max(f32::MIN_POSITIVE);
-    let middle = low.x + size.x / 2.0;
-    let place = |p: &Vec2| Vec2::new(scale * (p.x - middle), like_low.y + scale * (p.y - low.y));
+    // Middle over middle, feet as high.
+    let (from, to) = (
+        low + Vec2::new(size.x / 2.0, 0.0),
+        like_low + Vec2::new(like_size.x / 2.0, 0.0),
+    );
+    let place = |p: &Vec2| to + scale * (*p - from);
     // A tenth of a millimetre is enough for a file that people read.
     flat.iter()
         .map(place)

@@ -42,43 +42,120 @@ fn misses(
         .collect()
 }
 
-fn human() -> (Rig, Controls, PoseLibrary) {
-    let rig = Rig::from_glb(include_bytes!("../../../../assets/rigs/human.glb")).unwrap();
-    let controls = include_str!("../../../../assets/rigs/human.controls.ron");
+/// A shipped body with its pose library.
+fn body(rig: &[u8], controls: &str, poses: &str) -> (Rig, Controls, PoseLibrary) {
+    let rig = Rig::from_glb(rig).unwrap();
     let controls = Controls::from_ron(controls, &rig).unwrap();
-    let poses = include_str!("../../../../assets/poses/human.ron");
     let library = PoseLibrary::from_ron(poses, &controls).unwrap();
     (rig, controls, library)
 }
 
-#[test]
-fn joints_of_a_person_are_found_in_many_poses() {
-    let (rig, controls, library) = human();
+fn human() -> (Rig, Controls, PoseLibrary) {
+    body(
+        include_bytes!("../../../../assets/rigs/human.glb"),
+        include_str!("../../../../assets/rigs/human.controls.ron"),
+        include_str!("../../../../assets/poses/human.ron"),
+    )
+}
+
+fn horse() -> (Rig, Controls, PoseLibrary) {
+    body(
+        include_bytes!("../../../../assets/rigs/horse.glb"),
+        include_str!("../../../../assets/rigs/horse.controls.ron"),
+        include_str!("../../../../assets/poses/horse.ron"),
+    )
+}
+
+/// Holds a preset against a body: at rest every joint within `at_rest_m`, in other poses within `posed_m`.
+fn check(
+    preset: Preset,
+    like: &Figure,
+    (rig, controls, library): &(Rig, Controls, PoseLibrary),
+    poses: &[&str],
+    (at_rest_m, posed_m): (f32, f32),
+) {
     let rest = Pose::rest(rig.skeleton.bones.len());
-    for (joint, miss) in misses(Preset::Scape, Figure::human(), &rig, &rest, Quat::IDENTITY) {
-        assert!(miss < 0.035, "{joint} at rest: {miss} m");
-    }
+    let mut far = misses(preset, like, rig, &rest, Quat::IDENTITY);
+    far.retain(|(_, miss)| *miss > at_rest_m);
+    assert!(far.is_empty(), "at rest {far:?}");
     let turned = Quat::from_euler(glam::EulerRot::YXZ, 2.0, 0.7, -1.3);
     let mut far = vec![];
-    for name in [
+    for name in poses {
+        let pose = library
+            .poses
+            .iter()
+            .find(|pose| pose.name == *name)
+            .unwrap();
+        let pose = controls.pose(&pose.values);
+        let misses = misses(preset, like, rig, &pose, turned);
+        far.extend(
+            misses
+                .into_iter()
+                .filter(|(_, miss)| *miss > posed_m)
+                .map(|miss| (name, miss)),
+        );
+    }
+    assert!(far.is_empty(), "{far:?}");
+}
+
+#[test]
+fn joints_of_a_person_are_found_in_many_poses() {
+    let poses = [
         "a_pose",
         "t_pose",
         "stand_at_ease",
         "walk_1_heel_strike_r",
         "hero",
         "march",
-    ] {
-        let pose = library.poses.iter().find(|pose| pose.name == name).unwrap();
-        let pose = controls.pose(&pose.values);
-        let misses = misses(Preset::Scape, Figure::human(), &rig, &pose, turned);
-        far.extend(
-            misses
-                .into_iter()
-                .filter(|(_, miss)| *miss > 0.07)
-                .map(|miss| (name, miss)),
+    ];
+    check(
+        Preset::Scape,
+        Figure::human(),
+        &human(),
+        &poses,
+        (0.035, 0.07),
+    );
+}
+
+#[test]
+fn joints_of_a_horse_are_found_in_many_poses() {
+    let poses = [
+        "stand",
+        "stand_alert",
+        "walk_1",
+        "walk_4",
+        "trot_1_support_lh_rf",
+        "square_wide",
+    ];
+    check(
+        Preset::ToscaHorse,
+        Figure::horse(),
+        &horse(),
+        &poses,
+        (0.09, 0.12),
+    );
+}
+
+#[test]
+fn a_horse_is_drawn_as_it_walks_to_the_right() {
+    let (rig, ..) = horse();
+    let turned = Quat::from_rotation_y(2.5);
+    let mut mesh = rig.mesh.clone();
+    mesh.positions.iter_mut().for_each(|p| *p = turned * *p);
+    let figure = Preset::ToscaHorse.figure(&mesh).unwrap();
+    assert_eq!(figure.views, Figure::horse().views);
+    for (joint, (found, like)) in figure
+        .joints
+        .iter()
+        .zip(figure.template.iter().zip(&Figure::horse().template))
+    {
+        // The drawn template steps; the body stands square.
+        assert!(
+            found.distance(*like) < 0.2,
+            "{}: {found} {like}",
+            joint.name
         );
     }
-    assert!(far.is_empty(), "{far:?}");
 }
 
 #[test]
