@@ -108,11 +108,14 @@ fn write_table(text: &mut String, report: &MotionReport) -> std::fmt::Result {
     )?;
     writeln!(
         text,
-        "\n{} at {:.2} m/s: {:.1} % of the steps of feet near the ground skate, {:.1} % with the body held still",
+        "\n{} at {:.2} m/s: {:.1} % of the steps of feet on the ground skate, {:.1} % with the body held still; \
+         below 5 cm, where feet swing too, {:.1} % and {:.1} %",
         test.gaits.join(", "),
         gaits.speed_m_per_s,
         gaits.grounded_percent,
-        gaits.still_percent
+        gaits.still_percent,
+        gaits.grounded_below_5_cm_percent,
+        gaits.still_below_5_cm_percent
     )
 }
 

@@ -243,13 +243,6 @@ impl Inference {
         }
         Ok(longest)
     }
-
-    /// The height of about the lowest point of a latent's mesh, metres: of the lowest of its soles and of some thousand other vertices.
-    pub(crate) fn lowest_m(&mut self, latent: &[f32]) -> Result<f32, InferError> {
-        let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
-        let heights = self.probe.decode(coefficients).iter().map(|p| p[1]);
-        Ok(heights.fold(f32::INFINITY, f32::min))
-    }
 }
 
 fn coefficients<'a>(

@@ -11,9 +11,6 @@ use crate::model::Model;
 /// Triangles whose edges stand for all edges of a mesh: so many that a 99th percentile of theirs is one of all.
 const PROBED_TRIANGLES: usize = 1500;
 
-/// The lowest share of a body's height, whose vertices decide where the ground is.
-const SOLES: f32 = 0.05;
-
 /// The distance from the training set at which trust begins to fall, and at which none is left.
 const DISTANCE: [f32; 2] = [1.0, 2.0];
 /// The edge stretch at which trust begins to fall, and at which none is left.
@@ -43,7 +40,7 @@ impl Trust {
     }
 }
 
-/// Some edges of a mesh, how long they may be, its soles, and what it takes to decode the vertices of these alone.
+/// Some edges of a mesh, how long they may be, and what it takes to decode their vertices alone.
 #[derive(Debug, Clone)]
 pub(crate) struct Probe {
     layer: FinalLayer,
@@ -68,9 +65,12 @@ impl Probe {
         let step = triangles.len().div_ceil(PROBED_TRIANGLES).max(1);
         let probed: Vec<[u32; 3]> = triangles.iter().step_by(step).copied().collect();
         let mut vertices: Vec<u32> = probed.as_flattened().to_vec();
-        vertices.extend(soles(model));
         vertices.sort_unstable();
         vertices.dedup();
+        if vertices.is_empty() {
+            // A cloud of points has no edges; a layer has at least one vertex.
+            vertices.push(0);
+        }
         // Every vertex and edge looked for is there: both lists were made of these triangles.
         let local = |v: u32| vertices.binary_search(&v).unwrap_or_default() as u32;
         let edges = unique_edges(&probed);
@@ -100,17 +100,21 @@ impl Probe {
         Ok(probe)
     }
 
-    /// The edges' lengths in the pose of the figure's template.
+    /// The edges' lengths in the pose of the figure's template; all 0 where the template is no sketch.
     fn template_lengths(&mut self, model: &Model) -> Vec<f32> {
-        self.decode(&template_coefficients(model));
+        let input = Sketch::template(model.figure()).input_vector(model.figure());
+        let Ok(input) = input else {
+            return vec![0.0; self.edges.len()];
+        };
+        let latent = model.encoder2d().forward(&input);
+        self.decode(&model.head().forward(&latent));
         self.lengths().collect()
     }
 
-    /// Decodes the probed vertices from the final layer's coefficients, metres.
-    pub(crate) fn decode(&mut self, coefficients: &[f32]) -> &[[f32; 3]] {
+    /// Decodes the probed vertices from the final layer's coefficients.
+    fn decode(&mut self, coefficients: &[f32]) {
         self.layer
             .evaluate(coefficients, &mut self.scratch, &mut self.positions);
-        &self.positions
     }
 
     /// The lengths of the edges of what was decoded last.
@@ -156,33 +160,6 @@ impl Probe {
             edge_stretch,
         }
     }
-}
-
-/// The coefficients of the figure's template pose; of the mean latent where the template is no sketch.
-fn template_coefficients(model: &Model) -> Vec<f32> {
-    let input = Sketch::template(model.figure()).input_vector(model.figure());
-    let latent = match input {
-        Ok(input) => model.encoder2d().forward(&input),
-        Err(_) => vec![0.0; model.latent_len()],
-    };
-    model.head().forward(&latent)
-}
-
-/// The vertices that are lowest in the figure's template pose: what it stands on.
-fn soles(model: &Model) -> Vec<u32> {
-    let layer = model.final_layer();
-    let mut positions = vec![[0.0; 3]; layer.vertex_count()];
-    let coefficients = template_coefficients(model);
-    layer.evaluate(&coefficients, &mut layer.scratch(), &mut positions);
-    let heights = || positions.iter().map(|p| p[1]);
-    let lowest = heights().fold(f32::INFINITY, f32::min);
-    let highest = heights().fold(f32::NEG_INFINITY, f32::max);
-    let near = lowest + SOLES * (highest - lowest);
-    (0..)
-        .zip(heights())
-        .filter(|(_, y)| *y <= near)
-        .map(|(v, _)| v)
-        .collect()
 }
 
 /// 99 of 100 numbers are at most this; 0 for none.

@@ -1,5 +1,9 @@
 //! Feet that are down stay where they are.
 
+use stick3d_figure::sketch::Sketch;
+
+use super::contact::{flat, planted_feet};
+use super::flight::{filled, lifts};
 use super::*;
 use crate::Model;
 use crate::latent::{Easing, Interpolation, LatentKey, Motion, MotionSettings, Repeat};
@@ -46,13 +50,20 @@ fn a_walk_goes_forward_on_planted_feet() {
         })
         .collect();
     let velocities = horizontal_velocities(&steps, &times_s, &intervals, &stance());
+    assert!(velocities.iter().all(Option::is_some), "he never flies");
+    let velocities = filled(&velocities, true);
     for (index, velocity) in velocities.iter().enumerate() {
         assert!(
             (velocity.x - 0.8).abs() < 0.02 && velocity.y.abs() < 1e-6,
             "{velocity} in step {index}"
         );
     }
-    let track = GroundTrack::new(times_s, &steps, &velocities, 0.0);
+    let track = GroundTrack::new(
+        times_s,
+        steps.iter().map(|step| -step.lowest_m),
+        &velocities,
+        0.0,
+    );
     assert!(
         (track.per_round.x - 1.6).abs() < 0.03,
         "{}",
@@ -86,11 +97,39 @@ fn a_body_in_flight_keeps_its_speed() {
         None,
         Some(3.0 * Vec2::X),
     ];
-    let filled = fill_flights(&speeds);
-    assert_eq!(filled[3], 2.0 * Vec2::X);
-    assert!(filled.windows(2).all(|pair| pair[1].x >= pair[0].x));
-    assert_eq!(fill_flights(&[None, None]), [Vec2::ZERO; 2]);
-    assert_eq!(fill_flights(&[None, Some(Vec2::Y)]), [Vec2::Y; 2]);
+    let flown = filled(&speeds, false);
+    assert_eq!(flown[3], 2.0 * Vec2::X);
+    assert!(flown.windows(2).all(|pair| pair[1].x >= pair[0].x));
+    assert_eq!(filled(&[None, None], false), [Vec2::ZERO; 2]);
+    assert_eq!(filled(&[None, Some(Vec2::Y)], false), [Vec2::Y; 2]);
+    // In a loop the flight at the end goes on to the beginning.
+    let round = filled(&[Some(Vec2::ZERO), Some(3.0 * Vec2::X), None], true);
+    assert!((0.5..2.5).contains(&round[2].x), "{round:?}");
+}
+
+#[test]
+fn a_runner_flies_along_a_parabola_and_others_do_not() {
+    let times_s: Vec<f32> = (0..=10).map(|i| 0.05 * i as f32).collect();
+    let speeds = |speed: f32, flights: &[usize]| -> Vec<Option<Vec2>> {
+        (0..10)
+            .map(|step| (!flights.contains(&step)).then_some(speed * Vec2::X))
+            .collect()
+    };
+    let run = lifts(&speeds(2.0, &[4, 5, 6]), &times_s, 1.0, false);
+    assert!(run[4] == 0.0 && run[7] == 0.0 && run[5] > 0.0);
+    assert!((run[5] - 0.5 * 9.81 * 0.05 * 0.1).abs() < 1e-4, "{run:?}");
+    // Too slow, too long, not carried before.
+    for (speed, flight) in [
+        (0.3, vec![4, 5]),
+        (2.0, vec![2, 3, 4, 5, 6, 7]),
+        (2.0, vec![0, 1]),
+    ] {
+        let lifts = lifts(&speeds(speed, &flight), &times_s, 1.0, false);
+        assert!(lifts.iter().all(|lift| *lift == 0.0), "{flight:?}");
+    }
+    // A flight across the end of a loop.
+    let round = lifts(&speeds(2.0, &[0, 9]), &times_s, 1.0, true);
+    assert!(round[0] > 0.0 && (round[0] - round[10]).abs() < 1e-6 && round[1] == 0.0);
 }
 
 #[test]

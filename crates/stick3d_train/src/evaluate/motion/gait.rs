@@ -8,8 +8,10 @@ use stick3d_model::latent::{Interpolation, Motion, MotionSettings, Repeat, feet}
 use super::cases::DrawnMotion;
 use crate::evaluate::EvalError;
 
-/// A foot is near the ground whose joint is less than this above where it is at rest, metres.
-const NEAR_M: f32 = 0.05;
+/// A foot is on the ground whose joint is less than this above where it is at rest, metres: a swinging foot is hardly lower
+/// (Zhang, Starke, Komura, Saito, "Mode-adaptive neural networks for quadruped motion control", ACM TOG 37, 2018). And one is
+/// near it that is less than the second number above; feet of real walkers swing there.
+const NEAR_M: [f32; 2] = [0.025, 0.05];
 /// A foot near the ground that is faster than this skates, metres a second.
 const SKATING_M_PER_S: f32 = 0.5;
 /// Rounds of a loop that are looked at.
@@ -18,8 +20,9 @@ const ROUNDS: f32 = 2.0;
 /// What one gait yields, on the ground and on the spot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Skating {
-    /// Share of the steps of feet near the ground that are too fast: grounded, and with the root joint held still.
-    pub(super) ratio: [f32; 2],
+    /// Per height of [`NEAR_M`], the share of the steps of feet below it that are too fast: grounded, and with the root joint
+    /// held still.
+    pub(super) ratio: [[f32; 2]; 2],
     /// How fast it walks over the ground, metres a second.
     pub(super) speed_m_per_s: f32,
 }
@@ -42,19 +45,17 @@ pub(super) fn measure(
     let motion = Motion::new(&keys, settings, inference)?;
     let rest_m = rest_heights(inference)?;
     let duration_s = ROUNDS * motion.path().duration_s();
-    let mut counts = [(0_usize, 0_usize); 2];
+    let mut counts = [[Count::default(); 2]; NEAR_M.len()];
     let start_s = motion.path().key_times_s()[0];
     let mut before: Option<[Vec<Vec3>; 2]> = None;
     for frame in 0..=(duration_s * frames_per_s) as usize {
         let time_s = start_s + frame as f32 / frames_per_s;
         let now = feet_at(&motion, time_s, inference)?;
         if let Some(before) = &before {
-            for ((before, now), (near, skating)) in before.iter().zip(&now).zip(&mut counts) {
-                for ((from, to), rest_m) in before.iter().zip(now).zip(&rest_m) {
-                    if from.y.max(to.y) - rest_m < NEAR_M {
-                        *near += 1;
-                        let step = (*to - *from) * Vec3::new(1.0, 0.0, 1.0);
-                        *skating += usize::from(step.length() * frames_per_s > SKATING_M_PER_S);
+            for (counts, near_m) in counts.iter_mut().zip(NEAR_M) {
+                for ((before, now), count) in before.iter().zip(&now).zip(counts) {
+                    for ((from, to), rest_m) in before.iter().zip(now).zip(&rest_m) {
+                        count.add(*from, *to, rest_m + near_m, frames_per_s);
                     }
                 }
             }
@@ -64,9 +65,30 @@ pub(super) fn measure(
     let way = |time_s| motion.root_translation(time_s).unwrap_or_default();
     let way = (way(start_s + duration_s) - way(start_s)) * Vec3::new(1.0, 0.0, 1.0);
     Ok(Skating {
-        ratio: counts.map(|(near, skating)| skating as f32 / near.max(1) as f32),
+        ratio: counts.map(|counts| counts.map(Count::ratio)),
         speed_m_per_s: way.length() / duration_s,
     })
+}
+
+/// Steps of feet that are low, and those of them that skate.
+#[derive(Debug, Clone, Copy, Default)]
+struct Count {
+    low: usize,
+    skating: usize,
+}
+
+impl Count {
+    fn add(&mut self, from: Vec3, to: Vec3, below_m: f32, frames_per_s: f32) {
+        if from.y.max(to.y) < below_m {
+            let step = (to - from) * Vec3::new(1.0, 0.0, 1.0);
+            self.low += 1;
+            self.skating += usize::from(step.length() * frames_per_s > SKATING_M_PER_S);
+        }
+    }
+
+    fn ratio(self) -> f32 {
+        self.skating as f32 / self.low.max(1) as f32
+    }
 }
 
 /// Where the feet are, with the root joint where the motion says, and with it only as high.

@@ -51,6 +51,16 @@ impl EdgeLengths {
         self
     }
 
+    /// Lets edges also be as long as on some meshes.
+    pub(super) fn or_as_on(mut self, meshes: &[Vec<Vec3>]) -> Self {
+        for mesh in meshes {
+            for (longest, length) in self.longest_m.iter_mut().zip(lengths(&self.edges, mesh)) {
+                *longest = longest.max(length);
+            }
+        }
+        self
+    }
+
     /// By which share edges are longer than they may be: 99 of 100 are stretched less.
     pub(super) fn stretch(&self, mesh: &[Vec3]) -> f32 {
         let longest = self.longest_m.iter().map(|l| l.max(f32::MIN_POSITIVE));

@@ -186,9 +186,15 @@ impl MotionEvaluation<'_> {
         let [.., before, last] = keys else {
             return Err(EvalError::NoMotions);
         };
-        let ends = [&before.latent, &last.latent].map(|latent| self.mesh(latent));
-        let [from, to] = ends;
-        let (from, to) = (from?, to?);
+        let meshes = keys
+            .iter()
+            .map(|key| self.mesh(&key.latent))
+            .collect::<Result<Vec<_>, _>>()?;
+        // What is wrong with a key is not the extrapolation's fault.
+        let edges = self.edges.clone().or_as_on(&meshes);
+        let [.., from, to] = meshes.as_slice() else {
+            return Err(EvalError::NoMotions);
+        };
         let interval_s = last.time_s - before.time_s;
         let mut latent = vec![0.0; last.latent.len()];
         let mut stretch = [0.0_f32; 2];
@@ -198,17 +204,17 @@ impl MotionEvaluation<'_> {
             let time_s = last.time_s + distance * interval_s;
             bounded.sample_into(time_s, &mut latent)?;
             let mesh = self.mesh(&latent)?;
-            stretch[0] = stretch[0].max(self.edges.stretch(&mesh));
+            stretch[0] = stretch[0].max(edges.stretch(&mesh));
             unbounded.sample_into(time_s, &mut latent)?;
             let mesh = self.mesh(&latent)?;
-            let here = self.edges.stretch(&mesh);
+            let here = edges.stretch(&mesh);
             stretch[1] = stretch[1].max(here);
             let straight: Vec<Vec3> = from
                 .iter()
-                .zip(&to)
+                .zip(to)
                 .map(|(a, b)| *b + distance * (*b - *a))
                 .collect();
-            let straight = self.edges.stretch(&straight);
+            let straight = edges.stretch(&straight);
             for (horizon, stretch) in horizons.iter_mut().zip([here, straight]) {
                 if stretch > BROKEN {
                     *horizon = horizon.min(distance);

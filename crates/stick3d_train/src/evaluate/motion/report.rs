@@ -55,7 +55,8 @@ pub struct BetweenReport {
     pub jerk_m_s3: f64,
 }
 
-/// What is beyond the last key.
+/// What is beyond the last key. Edges may be as long as on any body of the rig or in the keys: what is wrong with a key is no
+/// fault of its extrapolation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BeyondReport {
     /// How many motions were followed, up to 8 key distances.
@@ -81,10 +82,15 @@ pub struct BeyondReport {
 pub struct GaitReport {
     /// How many loops were looked at.
     pub gaits: usize,
-    /// Share of the steps of feet near the ground that skate, grounded, per cent; mean over loops.
+    /// Share of the steps of feet on the ground that skate (faster than 0.5 m/s while both ends of the step are less than
+    /// 2.5 cm above where the foot is at rest), grounded, per cent; mean over loops.
     pub grounded_percent: f64,
     /// The same with the root joint held still.
     pub still_percent: f64,
+    /// [`GaitReport::grounded_percent`] with 5 cm instead of 2.5: swinging feet count too.
+    pub grounded_below_5_cm_percent: f64,
+    /// The same with the root joint held still.
+    pub still_below_5_cm_percent: f64,
     /// How fast the loops go over the ground: mean, metres a second.
     pub speed_m_per_s: f64,
 }
@@ -113,8 +119,10 @@ pub(super) fn gaits(all: &[Skating]) -> GaitReport {
     };
     GaitReport {
         gaits: all.len(),
-        grounded_percent: rounded(100.0 * mean(|s| s.ratio[0])),
-        still_percent: rounded(100.0 * mean(|s| s.ratio[1])),
+        grounded_percent: rounded(100.0 * mean(|s| s.ratio[0][0])),
+        still_percent: rounded(100.0 * mean(|s| s.ratio[0][1])),
+        grounded_below_5_cm_percent: rounded(100.0 * mean(|s| s.ratio[1][0])),
+        still_below_5_cm_percent: rounded(100.0 * mean(|s| s.ratio[1][1])),
         speed_m_per_s: rounded(mean(|s| s.speed_m_per_s)),
     }
 }
