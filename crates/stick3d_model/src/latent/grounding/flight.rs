@@ -38,9 +38,8 @@ pub(super) fn lifts(
         }
         let carried = |wrapped_s: f32, at_end: bool| wrapped_s > 0.0 || is_loop || !at_end;
         let whole_s = earlier_s + span(flight) + later_s;
-        let runs = flown[flight.clone()]
-            .iter()
-            .all(|v| v.length() >= RUNNING * height_m);
+        let way: Vec2 = flown[flight.clone()].iter().sum();
+        let runs = way.length() >= RUNNING * height_m * flight.len() as f32;
         if whole_s > LONGEST_S
             || !runs
             || !carried(earlier_s, flight.start == 0)

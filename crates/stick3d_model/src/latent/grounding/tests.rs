@@ -121,7 +121,7 @@ fn a_runner_flies_along_a_parabola_and_others_do_not() {
     // Too slow, too long, not carried before.
     for (speed, flight) in [
         (0.3, vec![4, 5]),
-        (2.0, vec![2, 3, 4, 5, 6, 7]),
+        (2.0, vec![2, 3, 4, 5, 6, 7, 8]),
         (2.0, vec![0, 1]),
     ] {
         let lifts = lifts(&speeds(speed, &flight), &times_s, 1.0, false);
