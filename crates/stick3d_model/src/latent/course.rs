@@ -34,8 +34,9 @@ impl Course {
     /// The time on the path at a clock's time, and how many rounds were done before.
     pub(super) fn place(self, time_s: f32) -> (f32, f32) {
         let (start_s, end_s) = self.range_s();
-        // Within its range a time is itself, to the last digit.
-        if (start_s..end_s).contains(&time_s) {
+        // Within its range a time is itself, to the last digit; the end of a round is the beginning of the next.
+        let turns_there = !matches!(self, Self::Round { .. });
+        if (start_s..end_s).contains(&time_s) || (turns_there && time_s == end_s) {
             return (time_s, 0.0);
         }
         let (span, since) = (end_s - start_s, time_s - start_s);

@@ -87,8 +87,10 @@ pub enum EvalError {
     /// The keys of a motion are no path.
     #[error(transparent)]
     Path(#[from] PathError),
-    /// A motion has fewer than two keys.
-    #[error("a motion to be measured has fewer than two keys; give it two")]
+    /// There is no motion, or one has fewer than two keys.
+    #[error(
+        "there is no motion to measure; name the body and the pose library that the model was trained on"
+    )]
     NoMotions,
     /// No mesh of the set was kept from the model.
     #[error(

@@ -91,6 +91,9 @@ pub fn evaluate_motion(
         rig.mesh.positions.len(),
         &rig.mesh.triangles,
     ))?;
+    if motions.is_empty() && gaits.is_empty() {
+        return Err(EvalError::NoMotions);
+    }
     let poses: Vec<Pose> = stream
         .take(config.edge_poses)
         .chain(library.iter().cloned())
