@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use stick3d_model::Model;
 use stick3d_train::evaluate::{
-    BetweenReport, MotionEvalConfig, MotionEvalInput, MotionReport, TrueMotion, evaluate_motion,
-    held_out_motions,
+    BetweenReport, MotionEvalConfig, MotionEvalInput, MotionReport, TrueMotion, clip_gaits,
+    clip_motions, evaluate_motion, held_out_motions,
 };
 use stick3d_train::pose::PoseLibrary;
 use stick3d_train::rig::Pose;
@@ -27,10 +27,14 @@ pub(crate) fn measure(model: &Model, corpus: &Corpus, bar: &Bar) -> Outcome<Moti
         .iter()
         .map(|pose| (pose.name.clone(), corpus.controls.pose(&pose.values)))
         .collect();
+    let mut motions = held_out_motions(&named);
+    motions.extend(clip_motions(&corpus.rig));
+    let mut gaits = gaits(corpus);
+    gaits.extend(clip_gaits(&corpus.rig));
     let input = MotionEvalInput {
         rig: &corpus.rig,
-        motions: &held_out_motions(&named),
-        gaits: &gaits(corpus),
+        motions: &motions,
+        gaits: &gaits,
         library: &corpus.poses_both_ways(&corpus.library),
         stream: corpus.stream(&trained_on, EDGE_STREAM),
     };
@@ -81,7 +85,7 @@ fn write_table(text: &mut String, report: &MotionReport) -> std::fmt::Result {
     } = report;
     writeln!(
         text,
-        "{} motions between poses that were not trained on, each from {} sides; between their keys:",
+        "{} motions between poses that were not trained on, and of the rig, each from {} sides; between their keys:",
         test.motions.len(),
         test.yaws_deg.len()
     )?;

@@ -17,7 +17,7 @@ pub use baseline::Baseline;
 pub use metrics::{Collector, Metrics, procrustes_mean_distance};
 pub use motion::{
     BetweenReport, BeyondReport, GaitReport, MotionEvalConfig, MotionEvalInput, MotionReport,
-    MotionTestSet, TrueMotion, evaluate_motion, held_out_motions,
+    MotionTestSet, TrueMotion, clip_gaits, clip_motions, evaluate_motion, held_out_motions,
 };
 pub use report::{Drawn, Report, TestSet};
 

@@ -7,10 +7,17 @@ use stick3d_model::{Inference, Model};
 
 use crate::dataset::{drawn, posed};
 use crate::evaluate::EvalError;
-use crate::rig::{Pose, Rig};
+use crate::rig::{Clip, Pose, Rig};
 
 /// Seconds between two keys of a motion between poses.
 const INTERVAL_S: f32 = 0.5;
+/// How many moments of a rig's clip are drawn: first and last, and between.
+const CLIP_KEYS: usize = 5;
+/// How many moments of a clip that goes round are drawn.
+const GAIT_KEYS: usize = 8;
+/// Two poses are the same whose bones are turned, on average, and whose roots are moved by less than this.
+const SAME_RAD: f32 = 0.02;
+const SAME_M: f32 = 0.02;
 
 /// A motion of a rig: poses at times; between them every bone turns evenly (spherical linear interpolation).
 #[derive(Debug, Clone, PartialEq)]
@@ -79,6 +86,42 @@ pub fn held_out_motions(poses: &[(String, Pose)]) -> Vec<TrueMotion> {
         });
     }
     motions
+}
+
+/// The motions that come with a rig, each with a few moments drawn.
+#[must_use]
+pub fn clip_motions(rig: &Rig) -> Vec<TrueMotion> {
+    let drawn = |clip: &Clip| {
+        let last = clip.poses.len() - 1;
+        let mut keys: Vec<usize> = (0..CLIP_KEYS).map(|i| i * last / (CLIP_KEYS - 1)).collect();
+        keys.dedup();
+        let times_s = clip.times_s.iter().copied();
+        TrueMotion {
+            name: clip.name.clone(),
+            poses: times_s.zip(clip.poses.iter().cloned()).collect(),
+            keys,
+            is_loop: false,
+        }
+    };
+    let moving = rig.clips.iter().filter(|clip| clip.poses.len() > 1);
+    moving.map(drawn).collect()
+}
+
+/// Those of a rig's motions that go round: all that end as they began.
+#[must_use]
+pub fn clip_gaits(rig: &Rig) -> Vec<TrueMotion> {
+    let round = |clip: &&Clip| match clip.poses.as_slice() {
+        [first, _, .., last] => {
+            turned_by(first, last) / (first.rotations.len() as f32) < SAME_RAD
+                && first.root_translation.distance(last.root_translation) < SAME_M
+        }
+        _ => false,
+    };
+    let looped = |clip: &Clip| {
+        let interval_s = clip.duration_s() / GAIT_KEYS as f32;
+        TrueMotion::between(clip.name.clone(), clip.spread(GAIT_KEYS), interval_s, true)
+    };
+    rig.clips.iter().filter(round).map(looped).collect()
 }
 
 /// By how much the bones of two poses are turned against each other, the sum over all bones, radians.

@@ -12,7 +12,7 @@ mod methods;
 mod report;
 mod sketch_level;
 
-pub use cases::{TrueMotion, held_out_motions};
+pub use cases::{TrueMotion, clip_gaits, clip_motions, held_out_motions};
 pub use report::{BetweenReport, BeyondReport, GaitReport, MotionReport, MotionTestSet};
 
 use glam::{Quat, Vec3};
@@ -29,8 +29,8 @@ use cases::DrawnMotion;
 use measures::{Between, EdgeLengths};
 use methods::Method;
 
-/// Which way motions are turned before they are drawn, degrees about y.
-const YAWS_DEG: [f32; 3] = [0.0, 45.0, 80.0];
+/// Which way motions are turned about y before they are drawn, as shares of how far the figure's views are turned at most.
+const YAW_SHARES: [f32; 3] = [0.0, 0.5, 0.9];
 /// How far beyond the last key extrapolations are followed, in units of the distance between the last two keys.
 const FARTHEST: f32 = 8.0;
 /// Steps of an extrapolation in one such unit.
@@ -100,7 +100,8 @@ pub fn evaluate_motion(
         .collect();
     let edges =
         EdgeLengths::longest(rig, unique_edges(&rig.mesh.triangles), &poses).or_as_trained(model);
-    let turns = YAWS_DEG.map(|yaw_deg| Quat::from_rotation_y(yaw_deg.to_radians()));
+    let yaws_deg = YAW_SHARES.map(|share| share * model.figure().views.yaw_deg);
+    let turns = yaws_deg.map(|yaw_deg| Quat::from_rotation_y(yaw_deg.to_radians()));
     progress.begin(
         "measuring motions",
         (motions.len() + gaits.len()) * turns.len(),
@@ -130,7 +131,7 @@ pub fn evaluate_motion(
             progress.advance(1);
         }
     }
-    Ok(evaluation.report(motions, gaits))
+    Ok(evaluation.report(motions, gaits, &yaws_deg))
 }
 
 struct MotionEvaluation<'a> {
@@ -236,13 +237,18 @@ impl MotionEvaluation<'_> {
         methods::mesh(latent, &mut self.inference)
     }
 
-    fn report(self, motions: &[TrueMotion], gaits: &[TrueMotion]) -> MotionReport {
+    fn report(
+        self,
+        motions: &[TrueMotion],
+        gaits: &[TrueMotion],
+        yaws_deg: &[f32],
+    ) -> MotionReport {
         let names = |motions: &[TrueMotion]| motions.iter().map(|m| m.name.clone()).collect();
         MotionReport {
             test: MotionTestSet {
                 motions: names(motions),
                 gaits: names(gaits),
-                yaws_deg: YAWS_DEG.to_vec(),
+                yaws_deg: yaws_deg.to_vec(),
                 frames_per_s: self.config.frames_per_s,
             },
             between: Method::ALL

@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use super::*;
 use crate::pose::{Controls, PoseLibrary, ShippedBody};
+use crate::rig::Clip;
 use crate::training::Quiet;
 
 static RIG: LazyLock<Rig> = LazyLock::new(|| {
@@ -98,6 +99,44 @@ fn a_walk_of_keys_goes_on_and_skates_less_than_on_the_spot() {
         "{gaits:?}"
     );
     assert!((0.4..2.5).contains(&gaits.speed_m_per_s), "{gaits:?}");
+}
+
+#[test]
+fn clips_of_a_rig_are_motions_and_those_that_go_round_are_gaits() {
+    let mut rig = RIG.clone();
+    let [a, b] = <[Pose; 2]>::try_from(poses(&["stand_at_ease", "wave"])).unwrap();
+    let clip = |name: &str, poses: Vec<Pose>| Clip {
+        name: name.to_owned(),
+        times_s: (0..poses.len()).map(|i| 0.1 * i as f32).collect(),
+        poses,
+    };
+    let there = vec![
+        a.clone(),
+        a.clone(),
+        b.clone(),
+        b.clone(),
+        b.clone(),
+        b.clone(),
+    ];
+    let round = vec![a.clone(), b.clone(), a.clone()];
+    rig.clips = vec![
+        clip("there", there),
+        clip("round", round),
+        clip("still", vec![a]),
+    ];
+    let motions = clip_motions(&rig);
+    let keys: Vec<&[usize]> = motions
+        .iter()
+        .map(|motion| motion.keys.as_slice())
+        .collect();
+    assert_eq!(keys, [&[0, 1, 2, 3, 5][..], &[0, 1, 2]]);
+    let gaits = clip_gaits(&rig);
+    assert_eq!(
+        (gaits.len(), gaits[0].name.as_str(), gaits[0].poses.len()),
+        (1, "round", 8)
+    );
+    assert!(gaits[0].is_loop && (gaits[0].poses[1].0 - 0.025).abs() < 1e-6);
+    assert_eq!(report(&motions, &[]).between[0].motions, 6);
 }
 
 #[test]
