@@ -1,6 +1,7 @@
-//! The pose editor: draw a stick figure, lift the pen, see the body.
+//! The pose editor: choose a figure, draw it, lift the pen, see the body.
 //!
 //! `cargo run --release --example pose_editor`
+//! `cargo run --release --example pose_editor -- --figure horse`
 //! `cargo run --release --example pose_editor -- --sketch assets/sketches/wave.json --screenshot wave.png`
 
 use std::io::Write as _;
@@ -13,10 +14,19 @@ use clap::Parser;
 
 /// Draw a stick figure, see the body.
 ///
-/// Exit codes: 0 all is well; 1 a file cannot be read or written; 2 the command line is wrong;
+/// Exit codes: 0 all is well; 1 a file cannot be read or written; 2 the command line is wrong or there is no such figure;
 /// 3 there is no display; 4 there is no graphics adapter.
 #[derive(Parser)]
 struct Arguments {
+    /// The figure to begin with, such as human or horse; without it that of the sketch or of the model.
+    #[arg(long, value_name = "NAME")]
+    figure: Option<String>,
+    /// A model file: its figure can be chosen too. May be given several times.
+    #[arg(long, value_name = "FILE")]
+    model: Vec<PathBuf>,
+    /// From where to look at the body, degrees: 0 for the side that is drawn, 90 from the right of it.
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = parse_degrees)]
+    yaw: Option<f32>,
     /// A sketch file to begin with.
     #[arg(long, value_name = "FILE")]
     sketch: Option<PathBuf>,
@@ -37,12 +47,22 @@ fn parse_size(text: &str) -> Result<UVec2, String> {
     }
 }
 
+fn parse_degrees(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(degrees) if degrees.abs() <= 360.0 => Ok(degrees),
+        _ => Err(format!("\"{text}\" is no angle from -360 to 360 degrees")),
+    }
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let options = EditorOptions {
+        figure: arguments.figure,
+        models: arguments.model,
+        yaw_rad: arguments.yaw.map(f32::to_radians),
         sketch: arguments.sketch,
         screenshot: arguments.screenshot,
-        size_px: arguments.size,
+        size_px: Some(arguments.size),
     };
     match editor::run(&options) {
         Ok(()) => ExitCode::SUCCESS,

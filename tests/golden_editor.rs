@@ -78,12 +78,12 @@ fn difference(a: &RgbImage, b: &RgbImage) -> (f64, f64) {
     (sum as f64 / (3.0 * pixels), differing as f64 / pixels)
 }
 
-#[test]
-fn the_editor_shows_a_sketch_as_it_was_approved() {
-    let golden = workspace().join("tests/golden/editor.png");
+/// Fails unless the picture of a sketch is the approved one; approves it where that is asked for.
+fn assert_approved(sketch: &str, golden: &str) {
+    let golden = workspace().join("tests/golden").join(golden);
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("editor.png");
-    let Some(shown) = picture("assets/sketches/wave.json".as_ref(), &out) else {
+    let Some(shown) = picture(sketch.as_ref(), &out) else {
         return;
     };
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
@@ -96,7 +96,8 @@ fn the_editor_shows_a_sketch_as_it_was_approved() {
         .to_rgb8();
     let (mean, share) = difference(&shown, &approved);
     if mean > MEAN_DIFFERENCE || share > DIFFERING_SHARE {
-        let kept = std::env::temp_dir().join("stick3d_editor_differs.png");
+        let name = golden.file_name().unwrap().to_string_lossy().into_owned();
+        let kept = std::env::temp_dir().join(format!("stick3d_differs_{name}"));
         std::fs::copy(&out, &kept).unwrap();
         panic!(
             "the picture differs: mean {mean:.2} of 255 (at most {MEAN_DIFFERENCE}), {:.2} % of the pixels \
@@ -106,6 +107,16 @@ fn the_editor_shows_a_sketch_as_it_was_approved() {
             kept.display()
         );
     }
+}
+
+#[test]
+fn the_editor_shows_a_man_as_he_was_approved() {
+    assert_approved("assets/sketches/wave.json", "editor.png");
+}
+
+#[test]
+fn the_editor_shows_a_horse_as_it_was_approved() {
+    assert_approved("assets/sketches/horse_walk.json", "editor_horse.png");
 }
 
 #[test]
@@ -141,6 +152,20 @@ fn a_bad_sketch_ends_with_one_sentence_and_code_one() {
         "{said}"
     );
     assert!(!out.exists());
+}
+
+#[test]
+fn an_unknown_figure_ends_with_the_nearest_name_and_code_two() {
+    let output = Command::new(editor())
+        .args(["--figure", "hrose", "--screenshot", "never.png"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("mean \"horse\"?") && said.lines().count() == 1,
+        "{said}"
+    );
 }
 
 #[test]

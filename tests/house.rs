@@ -67,6 +67,7 @@ fn only_the_plugin_knows_bevy() {
         "stick3d_model",
         "stick3d_train",
         "stick3d_human",
+        "stick3d_horse",
         "stick3d_cli",
     ] {
         let names = resolved(package, &[]);
@@ -87,11 +88,27 @@ fn arrows_point_downward() {
         );
         assert!(!names.contains("stick3d_cli"));
     }
-    assert_eq!(
-        resolved("stick3d_human", &[]).len(),
-        1,
-        "the model's crate is nothing but bytes"
-    );
+    for package in ["stick3d_human", "stick3d_horse"] {
+        assert_eq!(
+            resolved(package, &[]).len(),
+            1,
+            "the model's crate is nothing but bytes"
+        );
+    }
+}
+
+#[test]
+fn a_game_takes_only_the_figures_it_shows() {
+    let only = |feature: &str| {
+        let names = resolved(
+            "bevy_stick3d",
+            &["--no-default-features", "--features", feature],
+        );
+        let models = ["stick3d_human", "stick3d_horse"];
+        models.map(|package| names.contains(package))
+    };
+    assert_eq!(only("human"), [true, false]);
+    assert_eq!(only("horse"), [false, true]);
 }
 
 /// Every Rust file of the workspace.

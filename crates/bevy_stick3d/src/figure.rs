@@ -8,6 +8,9 @@ use crate::stream::StreamedBody;
 
 /// A body that takes the pose of a [`StickSketch`] or of a [`Latent`].
 ///
+/// The model is all there is to say what it is: a man, a horse, or what you trained yourself and load as an
+/// asset. Another handle makes another body of it.
+///
 /// # Mandatory components
 /// Added by themselves: [`Latent`], [`Grounded`], [`FigureStatus`], [`StreamedBody`], [`Transform`],
 /// [`Visibility`].
@@ -29,7 +32,13 @@ impl StickFigure {
     /// The man that ships with the plugin.
     #[cfg(feature = "human")]
     pub const fn human() -> Self {
-        Self(crate::model_asset::HUMAN_MODEL)
+        Self(crate::embedded::HUMAN_MODEL)
+    }
+
+    /// The horse that ships with the plugin.
+    #[cfg(feature = "horse")]
+    pub const fn horse() -> Self {
+        Self(crate::embedded::HORSE_MODEL)
     }
 }
 
@@ -53,14 +62,35 @@ impl StickSketch {
         }
     }
 
-    /// A sketch of the man from named joints: `[("forehead", vec2(0.0, 1.7)), ...]`.
+    /// A sketch of any figure from named joints: `[("forehead", vec2(0.0, 1.7)), ...]`.
     ///
     /// # Errors
     /// As [`Sketch::from_named`]: an unknown, missing or doubled joint, a coordinate that is not finite.
+    pub fn named<'a>(
+        figure: &Figure,
+        joints: impl IntoIterator<Item = (&'a str, Vec2)>,
+    ) -> Result<Self, SketchError> {
+        Sketch::from_named(figure, joints).map(Self::from)
+    }
+
+    /// A sketch of the man from named joints.
+    ///
+    /// # Errors
+    /// As [`StickSketch::named`].
     pub fn human<'a>(
         joints: impl IntoIterator<Item = (&'a str, Vec2)>,
     ) -> Result<Self, SketchError> {
-        Sketch::from_named(Figure::human(), joints).map(Self::from)
+        Self::named(Figure::human(), joints)
+    }
+
+    /// A sketch of the horse from named joints.
+    ///
+    /// # Errors
+    /// As [`StickSketch::named`].
+    pub fn horse<'a>(
+        joints: impl IntoIterator<Item = (&'a str, Vec2)>,
+    ) -> Result<Self, SketchError> {
+        Self::named(Figure::horse(), joints)
     }
 
     /// The checked sketch of a figure.
@@ -98,7 +128,7 @@ pub struct Latent(pub Vec<f32>);
 
 /// Whether the body stands on the ground: its lowest vertex at y = 0 of the entity. On by default.
 ///
-/// When off, the figure's root joint (a man's abdomen) is at the entity's origin.
+/// When off, the figure's root joint (a man's abdomen, a horse's hip) is at the entity's origin.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Component, Debug, Default, PartialEq, Clone)]
 pub struct Grounded(pub bool);

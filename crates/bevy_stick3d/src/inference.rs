@@ -1,6 +1,7 @@
 //! The networks, ready to run: one set per model in use, and the system that turns sketches into latents.
 
 use bevy::asset::AssetLoadFailedEvent;
+use bevy::ecs::system::SystemChangeTick;
 use bevy::platform::collections::{HashMap, HashSet};
 use bevy::prelude::*;
 use stick3d_figure::Sketch;
@@ -170,29 +171,38 @@ fn make_models_ready(
 /// Changed sketches, and those of figures whose model changed, become latents.
 fn encode_sketches(
     mut figures: Query<(
-        &StickFigure,
+        Ref<StickFigure>,
         Option<Ref<StickSketch>>,
         &StreamedBody,
         &mut Latent,
         &mut FigureStatus,
     )>,
     mut inference: ResMut<StickInference>,
+    ticks: SystemChangeTick,
 ) {
     for (figure, sketch, body, mut latent, mut status) in &mut figures {
         let Some(ready) = inference.get_mut(&figure.0) else {
             continue;
         };
         let other_model = body.generation() != ready.generation;
+        // A latent from before the model was exchanged means nothing to the new one.
+        let mut foreign = body.model().is_some_and(|before| before != figure.0.id())
+            && figure
+                .last_changed()
+                .is_newer_than(latent.last_changed(), ticks.this_run());
         if let Some(sketch) = sketch
             && (other_model || sketch.is_changed())
         {
             match encode_points(ready, &sketch.points, &mut latent) {
-                Ok(()) => status.set_if_neq(FigureStatus::Ready),
+                Ok(()) => {
+                    foreign = false;
+                    status.set_if_neq(FigureStatus::Ready)
+                }
                 Err(problem) => status.set_if_neq(FigureStatus::Failed(problem)),
             };
         }
         // A figure without a usable pose stands as its template does.
-        if other_model && latent.0.len() != ready.inference.latent_len() {
+        if other_model && (foreign || latent.0.len() != ready.inference.latent_len()) {
             let template = ready.model.model().figure().template.clone();
             if let Err(problem) = encode_points(ready, &template, &mut latent) {
                 status.set_if_neq(FigureStatus::Failed(problem));

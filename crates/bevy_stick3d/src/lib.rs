@@ -15,6 +15,11 @@
 //! }
 //! ```
 //!
+//! # Figures
+//! A figure is chosen by its model and by nothing else: [`StickFigure::human`], [`StickFigure::horse`], or
+//! `StickFigure(asset_server.load("fox.stick3d"))` for one of your own. Sketches and canvases follow the
+//! figure of the model.
+//!
 //! # Authored and generated
 //! You write [`StickFigure`] (which model), [`StickSketch`] (the drawing) or [`Latent`] (the pose as the
 //! networks know it). The plugin writes [`StreamedBody`], [`FigureStatus`], and the entity's `Mesh3d`.
@@ -26,7 +31,7 @@
 //! | plugin | duty |
 //! | --- | --- |
 //! | [`Stick3dSchedulePlugin`] | orders [`Stick3dSystems`] |
-//! | [`Stick3dModelPlugin`] | models as assets; the embedded human |
+//! | [`Stick3dModelPlugin`] | models as assets; the embedded man and horse |
 //! | [`Stick3dSketchInputPlugin`] | pointer input over a [`SketchCanvas`] becomes strokes and sketches |
 //! | [`Stick3dInferencePlugin`] | sketches become latents |
 //! | [`Stick3dStreamPlugin`] | latents become meshes |
@@ -36,15 +41,19 @@
 //! | feature | default | what |
 //! | --- | --- | --- |
 //! | `human` | yes | embeds the trained model of the man |
-//! | `editor` | no | the pose editor, on `bevy_egui` |
+//! | `horse` | yes | embeds the trained model of the horse |
+//! | `editor` | no | the pose editor, on `bevy_egui`; [`launch`], which takes pictures without a window |
 //!
 //! # When something is wrong
 //! Nothing panics: [`Stick3dStatus`] says what is wrong with models, [`FigureStatus`] what is wrong with a figure.
 
 #[cfg(feature = "editor")]
 pub mod editor;
+mod embedded;
 mod figure;
 mod inference;
+#[cfg(feature = "editor")]
+pub mod launch;
 mod material;
 mod model_asset;
 mod schedule;
@@ -54,11 +63,14 @@ mod stream;
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
+#[cfg(feature = "horse")]
+pub use embedded::HORSE_MODEL;
+#[cfg(feature = "human")]
+pub use embedded::HUMAN_MODEL;
+pub use embedded::{EMBEDDED_MODELS, EmbeddedModel};
 pub use figure::{FigureStatus, Grounded, Latent, StickFigure, StickSketch};
 pub use inference::{ReadyModel, Stick3dInferencePlugin, StickInference};
 pub use material::{DefaultFigureMaterial, OwnMaterial, Stick3dMaterialPlugin};
-#[cfg(feature = "human")]
-pub use model_asset::HUMAN_MODEL;
 pub use model_asset::{Stick3dModelPlugin, StickModel, StickModelLoader, StickModelLoaderError};
 pub use schedule::{Stick3dSchedulePlugin, Stick3dSystems};
 pub use sketch_input::{SketchCanvas, Stick3dSketchInputPlugin};

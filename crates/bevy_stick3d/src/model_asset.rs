@@ -1,27 +1,33 @@
-//! The trained model as a Bevy asset: its loader, and the man that is embedded.
+//! The trained model as a Bevy asset, and its loader.
 
 use std::sync::Arc;
 
 use bevy::asset::io::Reader;
 use bevy::asset::{AssetLoader, LoadContext};
 use bevy::prelude::*;
+use stick3d_figure::Figure;
 use stick3d_model::{Model, ModelError};
 use thiserror::Error;
 
-/// The handle of the embedded man, the same in every app.
-#[cfg(feature = "human")]
-pub const HUMAN_MODEL: Handle<StickModel> =
-    bevy::asset::uuid_handle!("7f0c2b52-4a1e-4d0b-9a63-5f6a3d1e9c40");
+use crate::embedded::EMBEDDED_MODELS;
+use crate::status::Stick3dStatus;
 
 /// A trained model: everything of one kind of figure. The files end in `.stick3d`.
 #[derive(Asset, Clone, Reflect)]
 #[reflect(opaque, Clone)]
-pub struct StickModel(Arc<Model>);
+pub struct StickModel {
+    model: Arc<Model>,
+    /// The model's own, to be shared with drawings.
+    figure: Arc<Figure>,
+}
 
 impl StickModel {
     /// A model as an asset.
     pub fn new(model: Model) -> Self {
-        Self(Arc::new(model))
+        Self {
+            figure: Arc::new(model.figure().clone()),
+            model: Arc::new(model),
+        }
     }
 
     /// A model from the bytes of a `.stick3d` file.
@@ -34,7 +40,12 @@ impl StickModel {
 
     /// The model.
     pub fn model(&self) -> &Model {
-        &self.0
+        &self.model
+    }
+
+    /// The figure that the model draws.
+    pub fn figure(&self) -> &Arc<Figure> {
+        &self.figure
     }
 }
 
@@ -75,7 +86,7 @@ impl AssetLoader for StickModelLoader {
     }
 }
 
-/// The model asset, its loader, and the embedded man.
+/// The model asset, its loader, and the embedded models under their constant handles.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Stick3dModelPlugin;
 
@@ -83,31 +94,25 @@ impl Plugin for Stick3dModelPlugin {
     fn build(&self, app: &mut App) {
         app.init_asset::<StickModel>()
             .init_asset_loader::<StickModelLoader>()
-            .register_type::<StickModel>();
-        #[cfg(feature = "human")]
-        embed_human(app);
-    }
-}
-
-/// Puts the embedded man under his constant handle; a damaged build goes on without him and says so.
-#[cfg(feature = "human")]
-fn embed_human(app: &mut App) {
-    let problem = match StickModel::from_bytes(stick3d_human::MODEL) {
-        Ok(model) => app
-            .world_mut()
-            .resource_mut::<Assets<StickModel>>()
-            .insert(HUMAN_MODEL.id(), model)
-            .err()
-            .map(|error| error.to_string()),
-        Err(error) => Some(error.to_string()),
-    };
-    if let Some(problem) = problem {
-        app.init_resource::<crate::status::Stick3dStatus>();
-        app.world_mut()
-            .resource_mut::<crate::status::Stick3dStatus>()
-            .fail(
-                HUMAN_MODEL.id(),
-                format!("the embedded human is unusable: {problem}"),
-            );
+            .register_type::<StickModel>()
+            .init_resource::<Stick3dStatus>();
+        for embedded in &EMBEDDED_MODELS {
+            let handle = embedded.handle();
+            let mut assets = app.world_mut().resource_mut::<Assets<StickModel>>();
+            let problem = match embedded.model() {
+                Ok(model) => assets
+                    .insert(handle.id(), model.clone())
+                    .err()
+                    .map(|error| error.to_string()),
+                Err(error) => Some(error.to_string()),
+            };
+            // A damaged build goes on without the model and says so.
+            if let Some(problem) = problem {
+                let message = format!("an embedded model is unusable: {problem}");
+                app.world_mut()
+                    .resource_mut::<Stick3dStatus>()
+                    .fail(handle.id(), message);
+            }
+        }
     }
 }

@@ -61,13 +61,13 @@ pub(crate) struct PoseArguments {
     /// The sketch file (JSON), or - for standard input
     #[arg(long, value_name = "FILE|-")]
     pub(crate) sketch: PathBuf,
-    /// The model file; the embedded human without it
+    /// The model file; without it the built-in one of the sketch's figure
     #[arg(long, value_name = "FILE")]
     pub(crate) model: Option<PathBuf>,
     /// Where to write the mesh; the ending chooses the format: glb, obj, ply, off or png
     #[arg(long, value_name = "FILE", required_unless_present = "json")]
     pub(crate) out: Option<PathBuf>,
-    /// Prints joints (metres, x right, y up, z toward the viewer), latent and times as JSON
+    /// Prints figure, joints (metres, x right, y up, z toward the viewer), latent and times as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -16,8 +16,8 @@ use crate::bake::write_png;
 use crate::failure::{Failure, Outcome};
 use crate::inputs;
 
-/// Width and height of a picture, pixels.
-const PICTURE_PX: (u32, u32) = (800, 1000);
+/// The longer and the shorter side of a picture, pixels.
+const PICTURE_PX: [u32; 2] = [1000, 800];
 /// Where a picture is taken from: a little from the body's left and from above, radians.
 const PICTURE_YAW_PITCH_RAD: (f32, f32) = (0.3, 0.16);
 
@@ -25,8 +25,15 @@ const PICTURE_YAW_PITCH_RAD: (f32, f32) = (0.3, 0.16);
 pub(crate) fn run(arguments: &PoseArguments) -> Outcome {
     // A name that says no format is found before any work is done.
     let output = arguments.out.as_deref().map(Output::of).transpose()?;
-    let model = inputs::model(arguments.model.as_deref())?;
-    let sketch = read_sketch(&arguments.sketch, model.figure())?;
+    let bytes = inputs::bytes(&arguments.sketch)?;
+    let unusable =
+        |failure: Failure| failure.context(format!("cannot use {}", arguments.sketch.display()));
+    let model = match &arguments.model {
+        Some(path) => inputs::model(Some(path))?,
+        None => inputs::embedded_model(&bytes).map_err(unusable)?,
+    };
+    let sketch = Sketch::from_json(model.figure(), &bytes)
+        .map_err(|error| unusable(Failure::input(error)))?;
     let body = Body::pose(&model, &sketch)?;
     if let Some(output) = output {
         output.write(&model, &body)?;
@@ -35,12 +42,6 @@ pub(crate) fn run(arguments: &PoseArguments) -> Outcome {
         println!("{}", body.to_json(model.figure()));
     }
     Ok(())
-}
-
-fn read_sketch(path: &Path, figure: &Figure) -> Outcome<Sketch> {
-    let bytes = inputs::bytes(path)?;
-    Sketch::from_json(figure, &bytes)
-        .map_err(|error| Failure::input(error).context(format!("cannot use {}", path.display())))
 }
 
 /// A posed body, its lowest vertex at height 0.
@@ -102,6 +103,7 @@ impl Body {
             .map(|(joint, at)| (joint.name.clone(), json!(at.to_array())))
             .collect();
         json!({
+            "figure": figure.name,
             "joints": joints,
             "latent": self.latent,
             "seconds": {"encode": self.encode_s, "decode": self.decode_s},
@@ -156,7 +158,27 @@ fn picture(model: &Model, body: &Body) -> image::RgbaImage {
         colors: model.colors(),
         triangles: model.triangles(),
     };
-    let ((width, height), (yaw_rad, pitch_rad)) = (PICTURE_PX, PICTURE_YAW_PITCH_RAD);
+    let (yaw_rad, pitch_rad) = PICTURE_YAW_PITCH_RAD;
+    let [width, height] = picture_size(&positions);
     let camera = Camera::framing(&positions, yaw_rad, pitch_rad, width as f32 / height as f32);
     render(&[mesh], &camera, width, height)
+}
+
+/// Width and height of a picture, pixels: lying for a body that is longer than high, else standing.
+fn picture_size(positions: &[Vec3]) -> [u32; 2] {
+    let extent = |axis: fn(&Vec3) -> f32| {
+        let (low, high) = positions
+            .iter()
+            .map(axis)
+            .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), at| {
+                (low.min(at), high.max(at))
+            });
+        high - low
+    };
+    let [long, short] = PICTURE_PX;
+    if extent(|p| p.x) > extent(|p| p.y) {
+        [long, short]
+    } else {
+        [short, long]
+    }
 }

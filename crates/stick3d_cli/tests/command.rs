@@ -93,6 +93,51 @@ fn json_tells_joints_latent_and_times() {
 }
 
 #[test]
+fn the_figure_of_the_sketch_chooses_the_model() {
+    let posed = |name: &str| -> Value {
+        let output = pose(&sketch(name), &["--json"]);
+        assert!(output.status.success(), "{name}: {}", error_of(&output));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    assert_eq!(posed("walk.json")["figure"], "human");
+    for name in [
+        "horse_walk.json",
+        "horse_rear.json",
+        "horse_graze_left.json",
+    ] {
+        let json = posed(name);
+        assert_eq!(json["figure"], "horse");
+        assert_eq!(json["joints"].as_object().unwrap().len(), 12);
+        assert!(joint(&json, "hip")[1] > 0.6, "{name}: it stands");
+    }
+    let [walk, rear, graze] = [
+        "horse_walk.json",
+        "horse_rear.json",
+        "horse_graze_left.json",
+    ]
+    .map(posed);
+    // Which way it looks is where the head is.
+    let ahead = |json: &Value| joint(json, "forehead")[0] - joint(json, "hip")[0];
+    assert!(ahead(&walk) > 0.8, "walks to the right");
+    assert!(ahead(&graze) < -0.8, "grazes to the left");
+    let height = |json: &Value, name: &str| joint(json, name)[1];
+    assert!(height(&rear, "foot_fr") > height(&walk, "foot_fr") + 0.4);
+    assert!(height(&graze, "forehead") < height(&walk, "shoulder") - 0.2);
+}
+
+#[test]
+fn a_named_model_is_for_sketches_of_its_figure_alone() {
+    let human = workspace().join("assets/models/human.stick3d");
+    let model = ["--json", "--model", human.to_str().unwrap()];
+    let output = pose(&sketch("walk.json"), &model);
+    assert!(output.status.success(), "{}", error_of(&output));
+    let output = pose(&sketch("horse_walk.json"), &model);
+    assert_eq!(output.status.code(), Some(3));
+    let said = error_of(&output);
+    assert!(said.contains("horse") && said.contains("human"), "{said}");
+}
+
+#[test]
 fn every_format_is_written_whole() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["out.glb", "out.obj", "out.ply", "out.off", "out.png"] {
@@ -149,6 +194,12 @@ fn wrong_sketches_end_with_3_and_say_why() {
     let cases = [
         ("{", "line 1"),
         (r#"{"figure":"dragon","joints":{"neck":[0,1]}}"#, "dragon"),
+        (
+            r#"{"figure":"hrose","joints":{"hip":[0,1]}}"#,
+            "did you mean \"horse\"?",
+        ),
+        (r#"{"figure":"dragon","joints":{}}"#, "--model"),
+        (r#"{"joints":{}}"#, "figure"),
         (r#"{"figure":"human","joints":{"nek":[0,1]}}"#, "neck"),
         (r#"{"figure":"human","joints":{"neck":[0,1]}}"#, "forehead"),
         (&huge, "path point 3"),

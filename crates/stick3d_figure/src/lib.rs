@@ -47,7 +47,7 @@ pub mod edit;
 pub mod figure;
 pub mod interchange;
 pub mod mesh;
-mod names;
+pub mod names;
 pub mod preview;
 pub mod recognize;
 pub mod regressor;

@@ -1,10 +1,7 @@
 //! The nearest known name, for errors that say what was probably meant.
 
 /// The known name that is most like `given`, or none when nothing is near enough to be a likely slip.
-pub(crate) fn nearest<'a>(
-    given: &str,
-    known: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
+pub fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // A very long name is no slip of the pen, and comparing costs the product of both lengths.
     if given.len() > 64 {
         return None;
@@ -19,10 +16,7 @@ pub(crate) fn nearest<'a>(
 }
 
 /// The ending of an error about an unknown name: what was probably meant, else what there is.
-pub(crate) fn suggestion<'a>(
-    given: &str,
-    known: impl IntoIterator<Item = &'a str> + Clone,
-) -> String {
+pub fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
     match nearest(given, known.clone()) {
         Some(name) => format!("did you mean \"{name}\"?"),
         None => {

@@ -1,20 +1,40 @@
 //! Painting the canvas: paper, the guide, the ink, the joints.
 
+use std::sync::Arc;
+
 use bevy::math::Vec2;
 use bevy_egui::egui::{
-    Align2, Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2,
+    Align2, Color32, CornerRadius, Galley, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2,
+    vec2,
 };
 use stick3d_figure::{Figure, Side};
 
 use super::theme::{self, faded, side_color};
-use super::words::Words;
+use super::words::{Words, capitalised};
 use crate::sketch_input::{SketchDrawing, screen_from_canvas};
 
 /// Space between the card's edge and its words, points.
 const MARGIN: f32 = 24.0;
 
-/// The part of the card that the words take, points.
-const HEADER_HEIGHT: f32 = 98.0;
+/// Narrower cards have smaller words.
+const NARROW: f32 = 420.0;
+
+/// Lower cards have no room for hints.
+const LOW: f32 = 340.0;
+
+/// What the words take of a card, with and without hints, points: nothing is drawn there.
+const WORDS_HEIGHT: f32 = 78.0;
+const HEADLINE_HEIGHT: f32 = 50.0;
+
+/// The part of the card that is drawn on.
+pub(super) fn drawing_area(card: Rect) -> Rect {
+    let words = if card.height() < LOW {
+        HEADLINE_HEIGHT
+    } else {
+        WORDS_HEIGHT
+    };
+    card.with_min_y(card.min.y + words.min(card.height() / 4.0))
+}
 
 /// Turns canvas units into egui points.
 #[derive(Clone, Copy)]
@@ -38,7 +58,7 @@ impl ToScreen {
     }
 }
 
-/// Paints the whole canvas. `pulse` goes from 0 to 1 and back.
+/// Paints the whole card of the canvas. `pulse` goes from 0 to 1 and back.
 pub(super) fn paint(
     painter: &Painter,
     rect: Rect,
@@ -46,8 +66,9 @@ pub(super) fn paint(
     words: &Words,
     pulse: f32,
 ) {
-    let to_screen = ToScreen::new(rect);
-    paper(painter, rect);
+    let to_screen = ToScreen::new(drawing_area(rect));
+    let header = Header::of(painter, rect, drawing, words);
+    paper(painter, rect, header.bottom);
     match drawing.sketch() {
         Some(sketch) => {
             ink(painter, to_screen, drawing, 0.10);
@@ -64,18 +85,17 @@ pub(super) fn paint(
         let positions = stroke.positions().map(|p| to_screen.point(p)).collect();
         painter.line(positions, Stroke::new(3.6 * to_screen.size(), theme::INK));
     }
-    header(painter, rect, drawing, words);
+    header.paint(painter, drawing);
 }
 
-fn paper(painter: &Painter, rect: Rect) {
+fn paper(painter: &Painter, rect: Rect, words_bottom: f32) {
     let corners = CornerRadius::from(theme::CARD_RADIUS);
     painter.add(theme::CARD_SHADOW.as_shape(rect, corners));
     painter.rect_filled(rect, corners, theme::PAPER);
     let spacing = 28.0;
     // The words stand on blank paper.
-    let inner = rect
-        .shrink(spacing * 0.5)
-        .with_min_y(rect.min.y + HEADER_HEIGHT);
+    let inner = rect.shrink(spacing * 0.5);
+    let inner = inner.with_min_y((words_bottom + spacing * 0.5).min(inner.max.y));
     let (columns, rows) = (
         (inner.width() / spacing) as usize,
         (inner.height() / spacing) as usize,
@@ -94,38 +114,58 @@ fn paper(painter: &Painter, rect: Rect) {
     );
 }
 
-fn header(painter: &Painter, rect: Rect, drawing: &SketchDrawing, words: &Words) {
-    let left = rect.min + vec2(MARGIN, MARGIN - 4.0);
-    let headline = painter.text(
-        left,
-        Align2::LEFT_TOP,
-        capitalised(&words.headline),
-        theme::headline(),
-        theme::INK,
-    );
-    let hint = painter.text(
-        headline.left_bottom() + vec2(0.0, 4.0),
-        Align2::LEFT_TOP,
-        &words.hint,
-        theme::body(),
-        theme::INK_SOFT,
-    );
-    if drawing.sketch().is_some() {
-        return;
-    }
-    let width = (rect.width() - 2.0 * MARGIN).max(0.0);
-    let rail = Rect::from_min_size(hint.left_bottom() + vec2(0.0, 12.0), vec2(width, 4.0));
-    painter.rect_filled(rail, CornerRadius::same(2), theme::HAIRLINE);
-    let mut done = rail;
-    done.set_width(width * drawing.live_progress().fraction);
-    painter.rect_filled(done, CornerRadius::same(2), theme::ACCENT);
+/// The words at the top of the card, laid out.
+struct Header {
+    headline: (Pos2, Arc<Galley>),
+    hint: Option<(Pos2, Arc<Galley>)>,
+    /// How far the drawing has come, while it is not finished.
+    rail: Option<Rect>,
+    /// Where the words end.
+    bottom: f32,
 }
 
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(letters).collect()
-    })
+impl Header {
+    fn of(painter: &Painter, rect: Rect, drawing: &SketchDrawing, words: &Words) -> Self {
+        let margin = MARGIN.min(rect.width() / 12.0);
+        let width = (rect.width() - 2.0 * margin).max(1.0);
+        let font = if rect.width() < NARROW {
+            theme::small_headline()
+        } else {
+            theme::headline()
+        };
+        let left = rect.min + vec2(margin, margin - 4.0);
+        let headline = painter.layout(capitalised(&words.headline), font, theme::INK, width);
+        let mut bottom = left.y + headline.size().y;
+        let hint = (rect.height() >= LOW && !words.hint.is_empty()).then(|| {
+            let hint = painter.layout(words.hint.clone(), theme::body(), theme::INK_SOFT, width);
+            let at = pos2(left.x, bottom + 4.0);
+            bottom = at.y + hint.size().y;
+            (at, hint)
+        });
+        let rail = drawing.sketch().is_none().then(|| {
+            let rail = Rect::from_min_size(pos2(left.x, bottom + 12.0), vec2(width, 4.0));
+            bottom = rail.max.y;
+            rail
+        });
+        Self {
+            headline: (left, headline),
+            hint,
+            rail,
+            bottom,
+        }
+    }
+
+    fn paint(self, painter: &Painter, drawing: &SketchDrawing) {
+        for (at, galley) in std::iter::once(self.headline).chain(self.hint) {
+            painter.galley(at, galley, theme::INK);
+        }
+        if let Some(rail) = self.rail {
+            painter.rect_filled(rail, CornerRadius::same(2), theme::HAIRLINE);
+            let mut done = rail;
+            done.set_width(rail.width() * drawing.live_progress().fraction);
+            painter.rect_filled(done, CornerRadius::same(2), theme::ACCENT);
+        }
+    }
 }
 
 /// The side a bone is on: that of its outer end.

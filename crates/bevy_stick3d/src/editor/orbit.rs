@@ -13,7 +13,7 @@ const ZOOM_RANGE: [f32; 2] = [0.25, 3.0];
 /// Where the camera looks from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Orbit {
-    /// Turn about the vertical; 0 looks the figure in the face, positive from its left.
+    /// Turn about the vertical; 0 sees the side that is drawn, positive from more to the right of it.
     pub(super) yaw_rad: f32,
     /// Height above the horizon.
     pub(super) pitch_rad: f32,
@@ -57,6 +57,10 @@ impl Orbit {
     }
 }
 
+/// The least half extents of a box that is framed, as shares of the body's extent: a body that curls up should
+/// not fill the screen.
+const LEAST_HALF: Vec3 = Vec3::new(0.5, 0.5, 0.22);
+
 /// What the camera keeps in view: a box, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Framing {
@@ -66,25 +70,21 @@ pub(super) struct Framing {
     pub(super) high: Vec3,
 }
 
-impl Default for Framing {
-    /// A standing man.
-    fn default() -> Self {
-        Self {
-            low: Vec3::new(-0.7, 0.0, -0.3),
-            high: Vec3::new(0.7, 1.8, 0.3),
-        }
-    }
-}
-
 impl Framing {
-    /// The box, and never less than a sitting child: small bodies should not fill the screen.
-    pub(super) fn around(low: Vec3, high: Vec3) -> Self {
+    /// The box round a body at this moment; `extent_m` is half of the body's largest extent at rest.
+    pub(super) fn around(low: Vec3, high: Vec3, extent_m: f32) -> Self {
         let centre = (low + high) / 2.0;
-        let half = ((high - low) / 2.0).max(Vec3::new(0.45, 0.45, 0.2));
+        let half = ((high - low) / 2.0).max(LEAST_HALF * extent_m);
         Self {
             low: centre - half,
             high: centre + half,
         }
+    }
+
+    /// A place for a body of this size that is not there yet.
+    pub(super) fn of_extent(extent_m: f32) -> Self {
+        let top = Vec3::Y * 2.0 * extent_m;
+        Self::around(Vec3::ZERO, top, extent_m)
     }
 
     /// Moves a share of the way toward `goal`.
@@ -143,8 +143,9 @@ mod tests {
     #[test]
     fn every_corner_is_framed_from_everywhere() {
         for box_ in [
-            Framing::default(),
-            Framing::around(Vec3::new(-1.2, 0.0, -0.3), Vec3::new(0.9, 0.5, 1.1)),
+            Framing::of_extent(0.9),
+            Framing::around(Vec3::new(-1.2, 0.0, -0.3), Vec3::new(0.9, 0.5, 1.1), 0.9),
+            Framing::around(Vec3::new(-1.2, 0.0, -0.4), Vec3::new(1.2, 2.1, 0.4), 1.2),
         ] {
             for aspect in [0.5, 1.0, 2.0] {
                 for yaw in 0..8 {
@@ -174,7 +175,7 @@ mod tests {
         assert_eq!(orbit.pitch_rad, PITCH_RANGE_RAD[0]);
         orbit.drag(Vec2::new(f32::NAN, 0.0), size);
         assert!(orbit.yaw_rad.is_finite());
-        let camera = camera_transform(&orbit, &Framing::default(), 1.3);
+        let camera = camera_transform(&orbit, &Framing::of_extent(0.9), 1.3);
         assert!(camera.translation.y >= 0.05);
     }
 

@@ -5,22 +5,30 @@ use bevy_egui::egui::{
     Rect, RichText, Sense, Stroke, StrokeKind, TextEdit, Ui, UiBuilder, load::SizedTexture, vec2,
 };
 
+use super::session::Action;
 use super::status_line::StatusLine;
 use super::theme;
 use crate::sketch_input::SketchDrawing;
 
-/// What the user asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Action {
-    Undo,
-    Redo,
-    Mirror,
-    Clear,
-    Save,
-    Open,
-}
+/// The file field is at most so wide, points.
+const FILE_WIDTH: f32 = 200.0;
+/// In narrower rows buttons are closer together, points.
+const NARROW_ROW: f32 = 250.0;
 
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// The keys of the first figures.
+const FIGURE_KEYS: [Key; 9] = [
+    Key::Num1,
+    Key::Num2,
+    Key::Num3,
+    Key::Num4,
+    Key::Num5,
+    Key::Num6,
+    Key::Num7,
+    Key::Num8,
+    Key::Num9,
+];
 
 /// The keys, the longer combinations first: a match takes the key from those after it.
 const SHORTCUTS: [(Modifiers, Key, Action); 7] = [
@@ -44,65 +52,109 @@ pub(super) fn shortcut(ctx: &egui::Context) -> Option<Action> {
                 input.consume_shortcut(&KeyboardShortcut::new(*modifiers, *key))
             })
             .map(|(.., action)| *action)
+            .or_else(|| {
+                FIGURE_KEYS
+                    .iter()
+                    .position(|key| !typing && input.consume_key(Modifiers::NONE, *key))
+                    .map(Action::Choose)
+            })
     })
 }
 
-/// The strip under the canvas: what can be done, and the file.
-pub(super) fn toolbar(
+/// One button of a row.
+struct Tool {
+    words: &'static str,
+    keys: &'static str,
+    enabled: bool,
+    action: Action,
+}
+
+impl Tool {
+    fn new(words: &'static str, keys: &'static str, enabled: bool, action: Action) -> Self {
+        Self {
+            words,
+            keys,
+            enabled,
+            action,
+        }
+    }
+
+    /// Shows it; says whether it was clicked.
+    fn show(&self, ui: &mut Ui) -> bool {
+        let button = Button::new(self.words).min_size(vec2(0.0, 32.0));
+        ui.add_enabled(self.enabled, button)
+            .on_hover_text(self.keys)
+            .clicked()
+    }
+}
+
+/// A row of things beside each other, which paints nowhere else.
+fn row(ui: &mut Ui, rect: Rect, layout: Layout, content: impl FnOnce(&mut Ui)) {
+    ui.scope_builder(UiBuilder::new().max_rect(rect).layout(layout), |ui| {
+        ui.shrink_clip_rect(rect);
+        ui.spacing_mut().item_spacing.x = 2.0;
+        if rect.width() < NARROW_ROW {
+            ui.spacing_mut().button_padding.x = 5.0;
+        }
+        content(ui);
+    });
+}
+
+/// What can be done with the drawing.
+pub(super) fn tools(ui: &mut Ui, rect: Rect, drawing: &SketchDrawing) -> Option<Action> {
+    let begun = !drawing.strokes().is_empty() || drawing.sketch().is_some();
+    let finished = drawing.sketch().is_some();
+    let tools = [
+        Tool::new(
+            "Undo",
+            "Ctrl+Z, or scribble",
+            drawing.can_undo(),
+            Action::Undo,
+        ),
+        Tool::new("Redo", "Ctrl+Shift+Z", drawing.can_redo(), Action::Redo),
+        Tool::new("Mirror", "M", finished, Action::Mirror),
+        Tool::new("Clear", "Esc", begun, Action::Clear),
+    ];
+    let mut asked = None;
+    row(ui, rect, Layout::left_to_right(Align::Center), |ui| {
+        for tool in tools.iter().filter(|tool| tool.show(ui)) {
+            asked = Some(tool.action);
+        }
+    });
+    asked
+}
+
+/// The file, and what can be done with it.
+pub(super) fn file(
     ui: &mut Ui,
     rect: Rect,
     drawing: &SketchDrawing,
     file: &mut String,
 ) -> Option<Action> {
-    let mut action = None;
-    let mut button = |ui: &mut Ui, words: &str, keys: &str, enabled: bool, meaning: Action| {
-        let button = Button::new(words).min_size(vec2(0.0, 32.0));
-        let response = ui.add_enabled(enabled, button);
-        if response.on_hover_text(keys).clicked() {
-            action = Some(meaning);
+    let tools = [
+        Tool::new("Save", "Ctrl+S", drawing.sketch().is_some(), Action::Save),
+        Tool::new(
+            "Open",
+            "Ctrl+O, or drop a file on the window",
+            true,
+            Action::Open,
+        ),
+    ];
+    let mut asked = None;
+    row(ui, rect, Layout::right_to_left(Align::Center), |ui| {
+        for tool in tools.iter().filter(|tool| tool.show(ui)) {
+            asked = Some(tool.action);
         }
-    };
-    let begun = !drawing.strokes().is_empty() || drawing.sketch().is_some();
-    let finished = drawing.sketch().is_some();
-    let strip = rect.with_min_y(rect.max.y - 36.0);
-    ui.scope_builder(
-        UiBuilder::new()
-            .max_rect(strip)
-            .layout(Layout::left_to_right(Align::Center)),
-        |ui| {
-            ui.spacing_mut().item_spacing.x = 2.0;
-            button(
-                ui,
-                "Undo",
-                "Ctrl+Z, or scribble",
-                drawing.can_undo(),
-                Action::Undo,
-            );
-            button(ui, "Redo", "Ctrl+Shift+Z", drawing.can_redo(), Action::Redo);
-            button(ui, "Mirror", "M", finished, Action::Mirror);
-            button(ui, "Clear", "Esc", begun, Action::Clear);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.spacing_mut().item_spacing.x = 2.0;
-                button(ui, "Save", "Ctrl+S", finished, Action::Save);
-                button(
-                    ui,
-                    "Open",
-                    "Ctrl+O, or drop a file on the window",
-                    true,
-                    Action::Open,
-                );
-                let width = (ui.available_width() - 8.0).clamp(40.0, 200.0);
-                ui.add(
-                    TextEdit::singleline(file)
-                        .hint_text("sketch.json")
-                        .desired_width(width)
-                        .text_color(theme::INK_SOFT)
-                        .font(theme::small()),
-                );
-            });
-        },
-    );
-    action
+        let width = (ui.available_width() - 8.0).clamp(1.0, FILE_WIDTH);
+        ui.add(
+            TextEdit::singleline(file)
+                .hint_text("sketch.json")
+                .desired_width(width)
+                .text_color(theme::INK_SOFT)
+                .font(theme::small()),
+        );
+    });
+    asked
 }
 
 /// One quiet line inside the canvas' lower edge.
@@ -161,13 +213,15 @@ pub(super) fn view(
             theme::faded(theme::INK, 0.45),
         );
     }
-    ui.painter().text(
-        rect.center_bottom() - vec2(0.0, 16.0),
-        Align2::CENTER_BOTTOM,
-        "Drag to turn, scroll to zoom, double-click to reset",
+    let help = ui.painter().layout_no_wrap(
+        "Drag to turn, scroll to zoom, double-click to reset".to_owned(),
         theme::small(),
         theme::faded(theme::INK, 0.55),
     );
+    if help.size().x < rect.width() - 24.0 {
+        let at = rect.center_bottom() - vec2(help.size().x / 2.0, 16.0 + help.size().y);
+        ui.painter().galley(at, help, theme::INK);
+    }
     let response = ui.interact(rect, ui.id().with("view"), Sense::click_and_drag());
     let scroll = if response.hovered() {
         ui.ctx().set_cursor_icon(egui::CursorIcon::Grab);

@@ -10,6 +10,8 @@ use stick3d_figure::Side;
 
 /// Behind everything.
 pub(super) const DESK: Color32 = Color32::from_rgb(231, 227, 219);
+/// What a switch slides in.
+pub(super) const TRACK: Color32 = Color32::from_rgb(217, 212, 202);
 /// What is drawn on.
 pub(super) const PAPER: Color32 = Color32::from_rgb(252, 250, 245);
 /// The dots of the paper.
@@ -59,6 +61,11 @@ pub(super) const CARD_SHADOW: Shadow = Shadow {
 /// Large words: what to do next.
 pub(super) fn headline() -> FontId {
     FontId::new(24.0, FontFamily::Proportional)
+}
+
+/// The same where there is little room.
+pub(super) fn small_headline() -> FontId {
+    FontId::new(19.0, FontFamily::Proportional)
 }
 
 /// Running text.

@@ -11,10 +11,8 @@ use bevy_egui::{EguiTextureHandle, EguiUserTextures, egui};
 
 use super::orbit::{FOV_Y_RAD, Framing, Orbit, camera_transform};
 use super::{EditorClock, stage};
-use crate::figure::StickFigure;
 use crate::material::figure_material;
 use crate::sketch_input::SketchPreview;
-use crate::stream::StreamedBody;
 
 /// The 3D view.
 #[derive(Resource)]
@@ -23,9 +21,6 @@ pub(super) struct View {
     pub(super) image: Handle<Image>,
     /// The same, as egui knows it.
     pub(super) texture: egui::TextureId,
-    /// Where the user looks from.
-    pub(super) orbit: Orbit,
-    framing: Framing,
     size_px: UVec2,
 }
 
@@ -44,9 +39,50 @@ impl View {
 #[derive(Component)]
 pub(super) struct ViewCamera;
 
-/// The figure that is drawn.
+/// The extents that the stage is made for, metres; other bodies are shown larger or smaller than they are.
+const STAGE_EXTENTS_M: [f32; 2] = [0.35, 2.5];
+
+/// A figure that is drawn, and how it is looked at.
 #[derive(Component)]
-pub(super) struct EditedFigure;
+pub(super) struct EditedFigure {
+    /// Where the user looks from.
+    pub(super) orbit: Orbit,
+    /// Whether it is the one that is drawn now.
+    pub(super) is_shown: bool,
+    /// Half of its largest extent at rest, as shown.
+    extent_m: f32,
+    scale: f32,
+    /// What the camera keeps in view, once there is a body.
+    framing: Option<Framing>,
+}
+
+impl EditedFigure {
+    /// A figure of this size, half of its largest extent at rest.
+    pub(super) fn new(extent_m: f32, yaw_rad: Option<f32>, is_shown: bool) -> Self {
+        let [least, most] = STAGE_EXTENTS_M;
+        let shown_m = extent_m.clamp(least, most);
+        let usual = Orbit::default();
+        Self {
+            orbit: Orbit {
+                yaw_rad: yaw_rad.unwrap_or(usual.yaw_rad),
+                ..usual
+            },
+            is_shown,
+            extent_m: shown_m,
+            scale: if extent_m > 0.0 {
+                shown_m / extent_m
+            } else {
+                1.0
+            },
+            framing: None,
+        }
+    }
+
+    /// Fits the body to the stage.
+    pub(super) fn scale(&self) -> Transform {
+        Transform::from_scale(Vec3::splat(self.scale))
+    }
+}
 
 /// The materials of a finished and of an unfinished figure.
 #[derive(Resource)]
@@ -110,8 +146,6 @@ fn spawn_view(
     commands.insert_resource(View {
         image,
         texture,
-        orbit: Orbit::default(),
-        framing: Framing::default(),
         size_px,
     });
     let finished = figure_material();
@@ -143,21 +177,19 @@ fn resize_image(view: Res<View>, mut images: ResMut<Assets<Image>>) {
     }
 }
 
-/// The body is there once it has a pose, and pale until the sketch is complete.
+/// The body of the figure that is drawn is there once it has a pose, and pale until the sketch is complete.
 fn show_or_hide(
-    mut figures: Query<
-        (
-            Has<crate::StickSketch>,
-            Has<SketchPreview>,
-            &mut Visibility,
-            Option<&mut MeshMaterial3d<StandardMaterial>>,
-        ),
-        With<EditedFigure>,
-    >,
+    mut figures: Query<(
+        Has<crate::StickSketch>,
+        Has<SketchPreview>,
+        &mut Visibility,
+        Option<&mut MeshMaterial3d<StandardMaterial>>,
+        &EditedFigure,
+    )>,
     materials: Res<FigureMaterials>,
 ) {
-    for (has_sketch, is_preview, mut visibility, material) in &mut figures {
-        visibility.set_if_neq(if has_sketch {
+    for (has_sketch, is_preview, mut visibility, material, edited) in &mut figures {
+        visibility.set_if_neq(if has_sketch && edited.is_shown {
             Visibility::Inherited
         } else {
             Visibility::Hidden
@@ -175,25 +207,30 @@ fn show_or_hide(
     }
 }
 
-/// Keeps the body in view, gently.
+/// Keeps the body in view, gently; one that has not been drawn yet where it will stand.
 fn frame_figure(
-    mut view: ResMut<View>,
-    figures: Query<
-        (&Aabb, &Visibility, Ref<StreamedBody>),
-        (With<EditedFigure>, With<StickFigure>),
-    >,
+    view: Res<View>,
+    mut figures: Query<(Option<&Aabb>, &mut EditedFigure)>,
     mut cameras: Query<&mut Transform, With<ViewCamera>>,
     clock: Res<EditorClock>,
 ) {
-    let goal = figures
-        .iter()
-        .find(|(_, visibility, _)| **visibility != Visibility::Hidden)
-        .map_or_else(Framing::default, |(aabb, ..)| {
-            Framing::around(aabb.min().into(), aabb.max().into())
+    for (aabb, mut edited) in &mut figures {
+        if !edited.is_shown {
+            continue;
+        }
+        let (scale, extent_m) = (edited.scale, edited.extent_m);
+        let goal = aabb.map(|aabb| {
+            let [low, high] = [aabb.min(), aabb.max()].map(|corner| Vec3::from(corner) * scale);
+            Framing::around(low, high, extent_m)
         });
-    view.framing.approach(&goal, clock.share_of_way(0.18));
-    let wanted = camera_transform(&view.orbit, &view.framing, view.aspect());
-    for mut transform in &mut cameras {
-        transform.set_if_neq(wanted);
+        if let Some(goal) = goal {
+            let framing = edited.framing.get_or_insert(goal);
+            framing.approach(&goal, clock.share_of_way(0.18));
+        }
+        let framing = edited.framing.unwrap_or(Framing::of_extent(extent_m));
+        let wanted = camera_transform(&edited.orbit, &framing, view.aspect());
+        for mut transform in &mut cameras {
+            transform.set_if_neq(wanted);
+        }
     }
 }

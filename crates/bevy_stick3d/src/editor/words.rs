@@ -1,5 +1,6 @@
-//! The few words that say what to do next.
+//! The few words that say what to do next, and what figures and joints are called.
 
+use stick3d_figure::names::suggestion;
 use stick3d_figure::{Figure, Side};
 
 use crate::sketch_input::SketchDrawing;
@@ -60,22 +61,49 @@ pub(super) fn next_step(drawing: &SketchDrawing) -> Words {
     }
 }
 
-/// A joint's name as one says it: `elbow_r` is the right elbow.
+/// A joint's name as one says it: `elbow_r` is the right elbow, `knee_fl` the left front knee.
 pub(super) fn joint_words(figure: &Figure, joint: usize) -> String {
     let Some(joint) = figure.joints.get(joint) else {
         return "next joint".to_owned();
     };
-    let (side, suffixes) = match joint.side {
-        Side::Center => ("", ["", ""]),
-        Side::Right => ("right ", ["_r", "_right"]),
-        Side::Left => ("left ", ["_l", "_left"]),
+    let side = match joint.side {
+        Side::Center => return joint.name.replace('_', " "),
+        Side::Right => "right",
+        Side::Left => "left",
     };
-    let name = suffixes
-        .iter()
-        .filter(|suffix| !suffix.is_empty())
-        .find_map(|suffix| joint.name.strip_suffix(suffix))
-        .unwrap_or(&joint.name);
-    format!("{side}{}", name.replace('_', " "))
+    let (stem, ending) = joint.name.rsplit_once('_').unwrap_or((&joint.name, ""));
+    // The ending is the side by its letter or word, and before it may stand the end of the body.
+    let end = match ending
+        .strip_suffix(side)
+        .or(ending.strip_suffix(&side[..1]))
+    {
+        Some("") => "",
+        Some("f" | "front") => "front ",
+        Some("b" | "back") => "back ",
+        Some("h" | "hind") => "hind ",
+        _ => return format!("{side} {}", joint.name.replace('_', " ")),
+    };
+    format!("{side} {end}{}", stem.replace('_', " "))
+}
+
+/// The text with a capital letter at its beginning.
+pub(super) fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
+}
+
+/// A sentence about the figures there are, for one that was asked for and is not there.
+pub(super) fn known_figures<'a>(
+    asked: &str,
+    figures: impl Iterator<Item = &'a Figure> + Clone,
+) -> String {
+    let mut sentence = suggestion(asked, figures.map(|figure| &*figure.name));
+    if !sentence.ends_with('?') {
+        sentence.push('.');
+    }
+    sentence
 }
 
 #[cfg(test)]
@@ -90,6 +118,17 @@ mod tests {
         assert_eq!(words("foot_l"), "left foot");
         assert_eq!(words("forehead"), "forehead");
         assert_eq!(joint_words(human, 99), "next joint");
+        let renamed = |from: &str, to: &str| {
+            let mut figure = human.clone();
+            let joint = figure.joint_index(from).unwrap();
+            figure.joints[joint].name = to.to_owned();
+            joint_words(&figure, joint)
+        };
+        assert_eq!(renamed("knee_l", "knee_fl"), "left front knee");
+        assert_eq!(renamed("foot_r", "foot_br"), "right back foot");
+        assert_eq!(renamed("foot_r", "fore_paw_right"), "right fore paw");
+        assert_eq!(renamed("foot_r", "talon"), "right talon");
+        assert_eq!(renamed("neck", "tail_base"), "tail base");
     }
 
     #[test]

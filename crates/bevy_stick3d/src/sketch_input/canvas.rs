@@ -11,7 +11,9 @@ pub const CANVAS_SIZE: f32 = 1000.0;
 /// A surface to sketch on with mouse, touch or pen.
 ///
 /// # Mandatory components
-/// Added by itself: [`SketchDrawing`], which holds what was drawn. Insert your own for another figure than the man.
+/// Added by itself: [`SketchDrawing`], which holds what was drawn. It becomes a drawing of the figure of its
+/// entity's model as soon as that is loaded, and does not draw before. A canvas without an entity draws the man,
+/// unless you insert a drawing of another figure.
 ///
 /// # What it does
 /// Strokes that follow the figure's sketch path become a [`StickSketch`](crate::StickSketch) on the
@@ -20,7 +22,8 @@ pub const CANVAS_SIZE: f32 = 1000.0;
 ///
 /// # Canvas units
 /// The origin is in the middle, x goes right, **y up**, and the shorter side is [`CANVAS_SIZE`] units long,
-/// so that a drawing stays where it is when the window is resized.
+/// so that a drawing stays where it is when the window is resized. A pen that leaves the canvas draws along its
+/// edge: every joint can be taken hold of again.
 #[derive(Component, Clone, Debug, Reflect)]
 #[reflect(Component, Debug, Clone)]
 #[require(SketchDrawing)]
@@ -146,9 +149,28 @@ pub fn screen_from_canvas(rect: Rect, point: Vec2) -> Vec2 {
     point * Vec2::new(px_per_unit, -px_per_unit) + rect.center()
 }
 
+/// The point of the canvas nearest to a point in logical pixels, in canvas units. One that is not finite stays so.
+pub(super) fn nearest_on_canvas(rect: Rect, position_px: Vec2) -> Vec2 {
+    let inside = if position_px.is_finite() {
+        position_px.min(rect.max).max(rect.min)
+    } else {
+        position_px
+    };
+    canvas_from_screen(rect, inside)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nothing_is_drawn_beside_the_canvas() {
+        let rect = Rect::new(100.0, 50.0, 500.0, 450.0);
+        let corner = nearest_on_canvas(rect, Vec2::new(9.0e9, -1.0));
+        assert_eq!(corner, Vec2::splat(500.0));
+        assert_eq!(nearest_on_canvas(rect, rect.center()), Vec2::ZERO);
+        assert!(!nearest_on_canvas(rect, Vec2::new(f32::INFINITY, 60.0)).is_finite());
+    }
 
     #[test]
     fn the_shorter_side_is_a_thousand_units_and_y_goes_up() {

@@ -65,6 +65,7 @@ pub struct SketchDrawing {
 }
 
 impl Default for SketchDrawing {
+    /// An empty drawing of the man, until [`SketchDrawing::follow`] says otherwise.
     fn default() -> Self {
         Self::new(Figure::human().clone())
     }
@@ -72,10 +73,11 @@ impl Default for SketchDrawing {
 
 impl SketchDrawing {
     /// An empty drawing of a figure.
-    pub fn new(figure: Figure) -> Self {
+    pub fn new(figure: impl Into<Arc<Figure>>) -> Self {
+        let figure = figure.into();
         Self {
             progress: progress(&figure, &[], Pen::Up),
-            figure: Arc::new(figure),
+            figure,
             history: History::new(Ink::default(), MAX_UNDO),
             ink: Ink::default(),
             live: None,
@@ -355,6 +357,31 @@ impl SketchDrawing {
         true
     }
 
+    /// Makes it a drawing of `figure`: what was drawn of another one is gone, with its history.
+    pub fn follow(&mut self, figure: &Arc<Figure>) {
+        if Arc::ptr_eq(&self.figure, figure) {
+            return;
+        }
+        if self.figure == *figure {
+            self.figure = figure.clone();
+            return;
+        }
+        let was_blank = self.ink == Ink::default();
+        let changes = self.take_changes();
+        *self = Self {
+            changes,
+            ..Self::new(figure.clone())
+        };
+        if !was_blank {
+            self.changes.push(DrawingChange::Redrawn);
+        }
+    }
+
+    /// Whether it is a drawing of this very figure.
+    pub(super) fn follows(&self, figure: &Arc<Figure>) -> bool {
+        Arc::ptr_eq(&self.figure, figure)
+    }
+
     /// Puts a sketch of any scale on the canvas, in the middle.
     ///
     /// # Errors
@@ -456,6 +483,25 @@ mod tests {
         assert!(drawing.sketch().is_none());
         drawing.undo();
         assert!(drawing.sketch().is_some());
+    }
+
+    #[test]
+    fn another_figure_is_a_blank_sheet_and_the_same_one_is_not() {
+        let mut drawing = loaded();
+        drawing.take_changes();
+        drawing.follow(&Arc::new(Figure::human().clone()));
+        assert!(drawing.sketch().is_some() && drawing.can_undo());
+        assert_eq!(drawing.take_changes(), []);
+
+        let mut other = Figure::human().clone();
+        other.name = "ape".to_owned();
+        let other = Arc::new(other);
+        drawing.follow(&other);
+        assert!(drawing.sketch().is_none() && !drawing.can_undo());
+        assert_eq!(drawing.figure().name, "ape");
+        assert_eq!(drawing.take_changes(), [DrawingChange::Redrawn]);
+        drawing.follow(&Arc::new(Figure::human().clone()));
+        assert_eq!(drawing.take_changes(), [], "a blank sheet stays one");
     }
 
     #[test]

@@ -5,12 +5,10 @@ use stick3d_figure::{Figure, Side, complete_from_template};
 
 use super::canvas::CANVAS_SIZE;
 
-/// The height of the template, and of sketches that are loaded, canvas units.
-pub(super) const FIGURE_HEIGHT: f32 = CANVAS_SIZE * 0.80;
-/// The widest that a loaded sketch may be, canvas units.
+/// The height of the template and of loaded sketches, canvas units.
+const FIGURE_HEIGHT: f32 = CANVAS_SIZE * 0.84;
+/// The widest that a template or a loaded sketch may be, canvas units.
 const FIGURE_WIDTH: f32 = CANVAS_SIZE * 0.86;
-/// Where the middle of a figure goes: a little below that of the canvas, whose top has words.
-pub(super) const FIGURE_CENTRE: Vec2 = Vec2::new(0.0, -45.0);
 
 /// One point per joint: the known ones where they were drawn, the others where they may come to be.
 ///
@@ -33,7 +31,7 @@ pub(super) fn guide(figure: &Figure, placed: &[Option<Vec2>]) -> Vec<Vec2> {
     points
 }
 
-/// Points of any scale, turned into canvas units and put where a figure goes.
+/// Points of any scale, turned into canvas units and put in the middle of the canvas.
 pub(super) fn fitted(points: &[Vec2]) -> Vec<Vec2> {
     let (low, high) = bounds(points);
     let size = (high - low).max(Vec2::splat(f32::MIN_POSITIVE));
@@ -41,18 +39,19 @@ pub(super) fn fitted(points: &[Vec2]) -> Vec<Vec2> {
     let centre = (low + high) / 2.0;
     points
         .iter()
-        .map(|&point| (point - centre) * scale + FIGURE_CENTRE)
+        .map(|&point| (point - centre) * scale)
         .collect()
 }
 
-/// Whether enough is drawn to guess the rest: every joint in the middle of the body.
+/// Whether enough is drawn to guess the rest: every joint in the middle of the body from which limbs go out,
+/// and one more to tell the scale by.
 pub(super) fn is_enough(figure: &Figure, placed: &[Option<Vec2>]) -> bool {
+    let branches = |joint: usize| figure.bones.iter().filter(|b| b.contains(&joint)).count() > 1;
     placed.len() == figure.joint_count()
-        && figure
-            .joints
-            .iter()
-            .zip(placed)
-            .all(|(joint, point)| point.is_some() || joint.side != Side::Center)
+        && placed.iter().flatten().count() > 1
+        && (0..placed.len()).all(|joint| {
+            placed[joint].is_some() || figure.joints[joint].side != Side::Center || !branches(joint)
+        })
 }
 
 fn bounds(points: &[Vec2]) -> (Vec2, Vec2) {
@@ -71,7 +70,7 @@ mod tests {
         let points = guide(Figure::human(), &[None; 11]);
         let (low, high) = bounds(&points);
         assert!((high.y - low.y - FIGURE_HEIGHT).abs() < 0.1);
-        assert!(((low + high) / 2.0).distance(FIGURE_CENTRE) < 0.1);
+        assert!(((low + high) / 2.0).length() < 0.1);
     }
 
     #[test]
@@ -101,6 +100,12 @@ mod tests {
             .map(|(joint, &point)| (joint.side == Side::Center).then_some(point))
             .collect();
         assert!(is_enough(human, &placed));
+        let mut headless = placed.clone();
+        headless[human.joint_index("forehead").unwrap()] = None;
+        assert!(is_enough(human, &headless));
+        let mut without_trunk = placed.clone();
+        without_trunk[human.joint_index("abdomen").unwrap()] = None;
+        assert!(!is_enough(human, &without_trunk));
         assert!(!is_enough(human, &placed[1..]));
         assert!(!is_enough(human, &[None; 11]));
     }

@@ -5,6 +5,7 @@ mod drawing;
 mod guide;
 
 use bevy::camera::RenderTarget;
+use bevy::ecs::system::SystemParam;
 use bevy::picking::pointer::{Location, PointerAction, PointerButton, PointerId, PointerInput};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
@@ -16,9 +17,11 @@ pub use canvas::{
     StrokeFinished, StrokeUndone, canvas_from_screen, screen_from_canvas,
 };
 
+use canvas::nearest_on_canvas;
 pub use drawing::{DrawingChange, GRAB_RADIUS, SketchDrawing};
 
-use crate::figure::StickSketch;
+use crate::figure::{StickFigure, StickSketch};
+use crate::model_asset::StickModel;
 use crate::schedule::Stick3dSystems;
 
 /// Turns pointer input over a [`SketchCanvas`] into strokes and sketches, messages and events.
@@ -37,12 +40,39 @@ impl Plugin for Stick3dSketchInputPlugin {
             .register_type::<SketchPreview>()
             .add_systems(
                 PreUpdate,
-                (draw_with_pointers, tell_changes)
+                (follow_models, draw_with_pointers, tell_changes)
                     .chain()
                     .in_set(Stick3dSystems::Input),
             )
             // What code changed during `Update` is told in the same frame.
             .add_systems(PostUpdate, tell_changes.in_set(Stick3dSystems::Tell));
+    }
+}
+
+/// The models of the figures that canvases pose.
+#[derive(SystemParam)]
+struct PosedModels<'w, 's> {
+    figures: Query<'w, 's, &'static StickFigure>,
+    /// None in an app that takes its sketches elsewhere.
+    models: Option<Res<'w, Assets<StickModel>>>,
+}
+
+impl PosedModels<'_, '_> {
+    /// What the canvas poses, if that is a figure; the model once it is loaded.
+    fn of(&self, canvas: &SketchCanvas) -> Option<Option<&StickModel>> {
+        let figure = self.figures.get(canvas.figure?).ok()?;
+        Some(self.models.as_ref()?.get(&figure.0))
+    }
+}
+
+/// Drawings become such of the figures whose models their canvases pose.
+fn follow_models(models: PosedModels, mut canvases: Query<(&SketchCanvas, &mut SketchDrawing)>) {
+    for (canvas, mut drawing) in &mut canvases {
+        if let Some(Some(model)) = models.of(canvas)
+            && !drawing.follows(model.figure())
+        {
+            drawing.follow(model.figure());
+        }
     }
 }
 
@@ -55,6 +85,7 @@ fn draw_with_pointers(
     mut canvases: Canvases,
     cameras: Query<(&Camera, &RenderTarget)>,
     primary_window: Query<Entity, With<PrimaryWindow>>,
+    models: PosedModels,
     time: Res<Time<Real>>,
     mut drawing_pointers: Local<HashMap<PointerId, Entity>>,
 ) {
@@ -70,6 +101,10 @@ fn draw_with_pointers(
             PointerAction::Press(PointerButton::Primary) => {
                 for (entity, canvas, mut drawing) in &mut canvases {
                     let busy = drawing_pointers.values().any(|&other| other == entity);
+                    // What would be drawn before the figure is known would be lost.
+                    if matches!(models.of(canvas), Some(None)) {
+                        continue;
+                    }
                     let Some(rect) = area_under(canvas, &input.location, &cameras, window) else {
                         continue;
                     };
@@ -87,7 +122,7 @@ fn draw_with_pointers(
                     let inside = rect.is_some_and(|rect| rect.contains(input.location.position));
                     match rect {
                         Some(rect) if held == Some(entity) || (held.is_none() && inside) => {
-                            let at = canvas_from_screen(rect, input.location.position);
+                            let at = nearest_on_canvas(rect, input.location.position);
                             drawing.move_to(at, time_s);
                         }
                         _ if drawing.hovered().is_some() => drawing.leave(),

@@ -11,6 +11,7 @@ use stick3d_model::Model;
 
 use crate::figure::{FigureStatus, Grounded, Latent, StickFigure};
 use crate::inference::{ReadyModel, StickInference};
+use crate::model_asset::StickModel;
 use crate::schedule::Stick3dSystems;
 
 use cpu::BodyBounds;
@@ -23,6 +24,7 @@ pub use cpu::StreamError;
 #[reflect(Component, Debug, Default, Clone)]
 pub struct StreamedBody {
     mesh: Option<Handle<Mesh>>,
+    model: Option<AssetId<StickModel>>,
     generation: u64,
     failed: bool,
 }
@@ -31,6 +33,11 @@ impl StreamedBody {
     /// The mesh, once there is one.
     pub fn mesh(&self) -> Option<&Handle<Mesh>> {
         self.mesh.as_ref()
+    }
+
+    /// Of which model the mesh is; `None` before the first.
+    pub fn model(&self) -> Option<AssetId<StickModel>> {
+        self.model
     }
 
     /// Which ready model made the mesh; 0 before the first.
@@ -87,6 +94,7 @@ fn stream_bodies(
                 .entity(entity)
                 .insert((Mesh3d(mesh.clone()), NoAutoAabb));
             body.mesh = Some(mesh);
+            body.model = Some(figure.0.id());
             body.generation = ready.generation;
         }
         let shown = body

@@ -1,20 +1,19 @@
-//! Taking a picture of the editor without a window, for scripts and tests.
+//! Taking a picture of an app that has no window, for scripts and tests.
 
 use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use bevy::camera::RenderTarget;
 use bevy::prelude::*;
-use bevy::render::render_resource::PipelineCache;
+use bevy::render::render_resource::{PipelineCache, TextureFormat};
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::render::{Render, RenderApp, RenderSystems};
 use stick3d_model::files::write_atomically;
 use thiserror::Error;
 
-use super::PictureTarget;
-use super::viewport::EditedFigure;
-use crate::figure::{FigureStatus, StickSketch};
+use crate::figure::FigureStatus;
 
 /// So many frames in a row nothing may be waited for: textures and shaders arrive a frame or two late.
 const CALM_FRAMES: u32 = 10;
@@ -24,7 +23,7 @@ const MAX_FRAMES: u32 = 3_000;
 /// Why no picture was taken.
 #[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum ScreenshotError {
+pub enum PictureError {
     /// The body could not be made.
     #[error("no picture was taken, for the body could not be made: {0}")]
     Body(String),
@@ -42,18 +41,25 @@ pub enum ScreenshotError {
 }
 
 /// Takes one picture as soon as everything is there, writes it, and ends the app.
-pub(super) struct ScreenshotPlugin {
+pub(super) struct PicturePlugin {
     /// Where to write.
     pub(super) path: PathBuf,
+    /// How large.
+    pub(super) size_px: UVec2,
     /// What went wrong, for whoever runs the app.
-    pub(super) outcome: Arc<Mutex<Option<ScreenshotError>>>,
+    pub(super) outcome: Arc<Mutex<Option<PictureError>>>,
 }
 
-impl Plugin for ScreenshotPlugin {
+impl Plugin for PicturePlugin {
     fn build(&self, app: &mut App) {
         // Until the renderer has counted once, one is missing.
         let pending = Arc::new(AtomicUsize::new(1));
+        let size_px = self.size_px.max(UVec2::splat(16));
+        let image =
+            Image::new_target_texture(size_px.x, size_px.y, TextureFormat::Rgba8UnormSrgb, None);
+        let target = app.world_mut().resource_mut::<Assets<Image>>().add(image);
         app.insert_resource(Shoot {
+            target,
             path: self.path.clone(),
             outcome: self.outcome.clone(),
             pending: pending.clone(),
@@ -61,6 +67,7 @@ impl Plugin for ScreenshotPlugin {
             calm_frames: 0,
             shot: false,
         })
+        .add_systems(PostStartup, turn_cameras)
         .add_systems(Last, shoot_when_ready);
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app
@@ -82,8 +89,10 @@ fn count_pending_pipelines(cache: Res<PipelineCache>, pending: Res<Pending>) {
 
 #[derive(Resource)]
 struct Shoot {
+    /// What stands for the screen.
+    target: Handle<Image>,
     path: PathBuf,
-    outcome: Arc<Mutex<Option<ScreenshotError>>>,
+    outcome: Arc<Mutex<Option<PictureError>>>,
     pending: Arc<AtomicUsize>,
     frames: u32,
     calm_frames: u32,
@@ -91,7 +100,7 @@ struct Shoot {
 }
 
 impl Shoot {
-    fn end(&self, result: Result<(), ScreenshotError>, exit: &mut MessageWriter<AppExit>) {
+    fn end(&self, result: Result<(), PictureError>, exit: &mut MessageWriter<AppExit>) {
         match result {
             Ok(()) => exit.write(AppExit::Success),
             Err(error) => {
@@ -102,11 +111,19 @@ impl Shoot {
     }
 }
 
+/// Cameras of a window that does not exist look into the picture.
+fn turn_cameras(mut targets: Query<&mut RenderTarget>, shoot: Res<Shoot>) {
+    for mut target in &mut targets {
+        if matches!(*target, RenderTarget::Window(_)) {
+            *target = shoot.target.clone().into();
+        }
+    }
+}
+
 fn shoot_when_ready(
     mut commands: Commands,
     mut shoot: ResMut<Shoot>,
-    figures: Query<&FigureStatus, (With<EditedFigure>, With<StickSketch>)>,
-    target: Res<PictureTarget>,
+    figures: Query<&FigureStatus>,
     mut exit: MessageWriter<AppExit>,
 ) {
     if shoot.shot {
@@ -116,12 +133,12 @@ fn shoot_when_ready(
     let pending = shoot.pending.load(Ordering::Relaxed);
     if let Some(problem) = figures.iter().find_map(FigureStatus::problem) {
         shoot.shot = true;
-        shoot.end(Err(ScreenshotError::Body(problem.to_owned())), &mut exit);
+        shoot.end(Err(PictureError::Body(problem.to_owned())), &mut exit);
         return;
     }
     if shoot.frames > MAX_FRAMES {
         shoot.shot = true;
-        shoot.end(Err(ScreenshotError::NeverReady(pending)), &mut exit);
+        shoot.end(Err(PictureError::NeverReady(pending)), &mut exit);
         return;
     }
     let waiting = pending > 0
@@ -132,7 +149,7 @@ fn shoot_when_ready(
     if shoot.calm_frames >= CALM_FRAMES {
         shoot.shot = true;
         commands
-            .spawn(Screenshot::image(target.0.clone()))
+            .spawn(Screenshot::image(shoot.target.clone()))
             .observe(write_picture);
     }
 }
@@ -147,8 +164,8 @@ fn write_picture(
     shoot.end(result, &mut exit);
 }
 
-fn png_bytes(image: &Image) -> Result<Vec<u8>, ScreenshotError> {
-    let encode = |message: String| ScreenshotError::Encode(message);
+fn png_bytes(image: &Image) -> Result<Vec<u8>, PictureError> {
+    let encode = |message: String| PictureError::Encode(message);
     let picture = image
         .clone()
         .try_into_dynamic()
