@@ -7,7 +7,8 @@ use crate::sketch::Sketch;
 
 /// A whole sketch from the joints drawn so far: drawn ones stay where they are, each missing one hangs on the nearest
 /// drawn one as the template has it, in the drawing's scale. Missing limbs hang upright whatever the torso does, except
-/// that a drawing upside down is completed upside down.
+/// that a drawing upside down is completed upside down, and one of a body seen from the side that faces the other way
+/// is completed facing that way.
 ///
 /// None when fewer than two joints are drawn at different places (there is no scale yet), or when `placed` is of
 /// another figure.
@@ -15,19 +16,14 @@ pub fn complete_from_template(figure: &Figure, placed: &[Option<Vec2>]) -> Optio
     if placed.len() != figure.joint_count() {
         return None;
     }
-    let scale = drawn_scale(figure, placed)?;
-    let up = if is_upside_down(figure, placed) {
-        -scale
-    } else {
-        scale
-    };
+    let to_drawing = drawn_scale(figure, placed)? * turned(figure, placed);
     let mut points = placed.to_vec();
     // Bones form a tree, so one pass per bone reaches every joint.
     for _ in &figure.bones {
         for &[a, b] in &figure.bones {
             for (from, to) in [(a, b), (b, a)] {
                 if let (Some(start), None) = (points[from], points[to]) {
-                    points[to] = Some(start + (figure.template[to] - figure.template[from]) * up);
+                    points[to] = Some(start + (figure.template[to] - figure.template[from]) * to_drawing);
                 }
             }
         }
@@ -57,18 +53,30 @@ fn drawn_scale(figure: &Figure, placed: &[Option<Vec2>]) -> Option<f32> {
     (drawn > 0.0 && scale.is_finite()).then_some(scale)
 }
 
-/// Is most of what is drawn the other way up than in the template?
-fn is_upside_down(figure: &Figure, placed: &[Option<Vec2>]) -> bool {
+/// Which way round the template has to be for what is drawn: 1 or -1 for x and y.
+fn turned(figure: &Figure, placed: &[Option<Vec2>]) -> Vec2 {
     let center = (0..placed.len()).filter(|&j| figure.mirror_of(j) == j);
     let drawn: Vec<(Vec2, Vec2)> = center
         .filter_map(|j| Some((placed[j]?, figure.template[j])))
         .collect();
     let (Some(first), Some(last)) = (drawn.first(), drawn.last()) else {
-        return false;
+        return Vec2::ONE;
     };
-    let (here, there) = (last.0 - first.0, last.1 - first.1);
+    let here = (last.0 - first.0).normalize_or_zero();
+    let there = (last.1 - first.1).normalize_or_zero();
+    let about = Vec2::new(-1.0, 1.0);
+    // A body that is drawn from the front has nothing to turn about: its middle is upright.
+    let facing = if here.dot(there * about) > here.dot(there) + 0.2 {
+        about
+    } else {
+        Vec2::ONE
+    };
     // More than 120 degrees away.
-    here.dot(there) < -0.5 * here.length() * there.length()
+    if here.dot(there * facing) < -0.5 {
+        -facing
+    } else {
+        facing
+    }
 }
 
 #[cfg(test)]
@@ -93,6 +101,30 @@ mod tests {
         }
         let handstand = complete_from_template(human, &placed).unwrap();
         assert!(handstand.points()[6].y > handstand.points()[0].y);
+    }
+
+    #[test]
+    fn a_horse_is_completed_the_way_it_faces() {
+        let horse = Figure::horse();
+        let [forehead, shoulder] = ["forehead", "shoulder"].map(|j| horse.joint_index(j).unwrap());
+        for facing in [Vec2::ONE, Vec2::new(-1.0, 1.0)] {
+            let whole: Vec<Vec2> = horse.template.iter().map(|p| *p * facing * 200.0).collect();
+            let mut placed = vec![None; horse.joint_count()];
+            for joint in [forehead, shoulder] {
+                placed[joint] = Some(whole[joint]);
+            }
+            let sketch = complete_from_template(horse, &placed).unwrap();
+            for (point, expected) in sketch.points().iter().zip(&whole) {
+                assert!(point.distance(*expected) < 0.1, "{facing}: {point}");
+            }
+            // Lowering the head does not turn it about.
+            let down = Vec2::new(0.0, -1.5) * 200.0;
+            placed[forehead] = placed[forehead].map(|point| point + down);
+            let grazing = complete_from_template(horse, &placed).unwrap();
+            let hip = horse.joint_index("hip").unwrap();
+            let behind = (grazing.points()[hip] - grazing.points()[shoulder]).x * facing.x;
+            assert!(behind < 0.0, "{facing}");
+        }
     }
 
     #[test]
