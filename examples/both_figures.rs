@@ -71,7 +71,7 @@ fn spawn_figures(mut commands: Commands) -> Result {
         ("foot_br", vec2(-0.46, 0.08)),
         ("knee_bl", vec2(-0.88, 0.58)),
         ("foot_bl", vec2(-0.98, 0.06)),
-        ("tail", vec2(-0.98, 0.92)),
+        ("tail", vec2(-1.12, 0.80)),
     ])?;
     commands.spawn((
         StickFigure::human(),
@@ -89,6 +89,6 @@ fn spawn_figures(mut commands: Commands) -> Result {
 fn spawn_camera(mut commands: Commands) {
     commands.spawn((
         Camera3d::default(),
-        Transform::from_xyz(0.9, 1.7, 5.2).looking_at(Vec3::new(0.1, 0.95, 0.0), Vec3::Y),
+        Transform::from_xyz(0.5, 1.5, 4.5).looking_at(Vec3::new(0.15, 0.95, 0.0), Vec3::Y),
     ));
 }

@@ -154,11 +154,11 @@ fn a_canvas_draws_the_figure_of_its_model() {
         .id();
     app.update();
     let drawing = app.world().get::<SketchDrawing>(canvas).unwrap();
-    assert_eq!(drawing.figure(), Figure::horse());
+    assert_eq!(drawing.figure().name, Figure::horse().name);
 
     // One line along the whole path, through the faint figure.
     let guide = drawing.guide();
-    let path: Vec<Vec2> = Figure::horse().path.iter().map(|&j| guide[j]).collect();
+    let path: Vec<Vec2> = drawing.figure().path.iter().map(|&j| guide[j]).collect();
     let send = |app: &mut App, at: Vec2, action: PointerAction| {
         let target = bevy::camera::NormalizedRenderTarget::None {
             width: 800,

@@ -23,7 +23,8 @@ pub fn complete_from_template(figure: &Figure, placed: &[Option<Vec2>]) -> Optio
         for &[a, b] in &figure.bones {
             for (from, to) in [(a, b), (b, a)] {
                 if let (Some(start), None) = (points[from], points[to]) {
-                    points[to] = Some(start + (figure.template[to] - figure.template[from]) * to_drawing);
+                    points[to] =
+                        Some(start + (figure.template[to] - figure.template[from]) * to_drawing);
                 }
             }
         }
