@@ -76,14 +76,24 @@ for joint in $(sed -n '/^ *path: *\[/,/\]/p' "$figures/$name.ron" | grep -o '"[a
   fi
   before="$joint"
 done
-sleep 4
-[ -z "$out" ] || import -window root "$out"
 
-xdotool key ctrl+s
-for _ in $(seq 20); do
-  sleep 0.5
+# Where there is no window manager nobody has given the window the keyboard.
+xdotool windowfocus "$(xdotool search --name 'stick3d pose editor' | tail -n 1)"
+# Without a graphics card the editor may be some frames behind the pointer; keys have to last longer than one.
+for _ in $(seq 15); do
+  sleep 2
+  xdotool keydown ctrl
+  sleep 1
+  xdotool key s
+  sleep 1
+  xdotool keyup ctrl
   [ ! -s "${name}_sketch.json" ] || break
 done
+test -s "${name}_sketch.json" || { echo "the figure was not complete, and could not be saved"; exit 1; }
+xdotool mousemove 1200 60
+sleep 5
+[ -z "$out" ] || import -window root "$out"
+
 joints "${name}_sketch.json" | sort >read
 awk -v u="$unit_per_px" -v ox="${origin[0]}" -v oy="${origin[1]}" '
   NR == FNR { x[$1] = $2; y[$1] = $3; next }

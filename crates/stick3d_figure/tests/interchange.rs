@@ -116,23 +116,32 @@ fn bad_files_are_refused_with_what_and_where() {
     }
 }
 
+/// The shipped figure that a sketch file names.
+fn figure_of(bytes: &[u8]) -> &'static Figure {
+    let file: serde_json::Value = serde_json::from_slice(bytes).unwrap();
+    match file["figure"].as_str() {
+        Some("horse") => Figure::horse(),
+        _ => Figure::human(),
+    }
+}
+
 #[test]
 fn the_sample_sketches_are_natural() {
-    let human = Figure::human();
     let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/sketches");
     let files = json_files(&samples);
     assert!(files.len() >= 8);
     for path in files {
         let bytes = std::fs::read(&path).unwrap();
-        let drawing = Drawing::from_json(human, &bytes).unwrap();
-        let sketch = drawing.sketch(human).unwrap();
-        assert_eq!(sketch, Sketch::from_json(human, &bytes).unwrap());
+        let figure = figure_of(&bytes);
+        let drawing = Drawing::from_json(figure, &bytes).unwrap();
+        let sketch = drawing.sketch(figure).unwrap();
+        assert_eq!(sketch, Sketch::from_json(figure, &bytes).unwrap());
         if matches!(drawing, Drawing::Joints(_)) {
-            // Metres: no bone is longer than in a man of 1.80 m, and he stands on the ground.
-            for (bone, &[a, b]) in human.bones.iter().enumerate() {
+            // Metres: no bone is longer than the figure's own, and it stands on the ground.
+            for (bone, &[a, b]) in figure.bones.iter().enumerate() {
                 let length = sketch.points()[a].distance(sketch.points()[b]);
-                let name = &human.joints[b].name;
-                let most = human.template_bone_length(bone) * 1.2;
+                let name = &figure.joints[b].name;
+                let most = figure.template_bone_length(bone) * 1.2;
                 assert!(
                     length <= most,
                     "{}: {name} {length} of {most}",
