@@ -44,7 +44,7 @@ fn editor() -> PathBuf {
 fn picture(sketch: &Path, out: &Path) -> Option<RgbImage> {
     let output = Command::new(editor())
         .current_dir(workspace())
-        .args(["--size", "1280x720", "--sketch"])
+        .args(["--size", "960x540", "--sketch"])
         .arg(sketch)
         .arg("--screenshot")
         .arg(out)
