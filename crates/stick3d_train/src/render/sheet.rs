@@ -6,8 +6,9 @@ use super::text::{draw_text, text_width_px};
 
 /// Space between pictures, pixels.
 const GAP: u32 = 4;
-/// Space for a label of two lines under each picture, pixels.
-const LABEL: u32 = 2 * LINE + 4;
+/// Lines of a label under each picture, and the space for them, pixels.
+const LINES: u32 = 3;
+const LABEL: u32 = LINES * LINE + 4;
 /// Height of a line and width of a letter, pixels.
 const LINE: u32 = 9;
 const LETTER: u32 = 8;
@@ -15,7 +16,7 @@ const LETTER: u32 = 8;
 const STEP: u8 = 5;
 
 /// Lays out labelled pictures row by row. Cells are as large as the largest picture; labels too long for
-/// two lines under their cell are cut.
+/// the lines under their cell are cut.
 pub fn contact_sheet(items: &[(String, RgbaImage)], columns: u32) -> RgbaImage {
     let columns = columns.clamp(1, items.len().max(1) as u32);
     let cell_width = items
@@ -46,19 +47,23 @@ pub fn contact_sheet(items: &[(String, RgbaImage)], columns: u32) -> RgbaImage {
     page
 }
 
-/// A label in at most two lines of so many letters, broken after an underscore where one fits.
-fn lines(label: &str, letters: usize) -> [String; 2] {
-    let letters_of: Vec<char> = label.chars().collect();
-    if letters_of.len() <= letters {
-        return [label.to_owned(), String::new()];
+/// A label, underscores as spaces, in at most [`LINES`] lines of so many letters; longer words are broken.
+fn lines(label: &str, letters: usize) -> Vec<String> {
+    let letters = letters.max(1);
+    let mut lines: Vec<String> = vec![];
+    for word in label.split('_') {
+        for part in word.chars().collect::<Vec<_>>().chunks(letters) {
+            match lines.last_mut() {
+                Some(line) if line.chars().count() + 1 + part.len() <= letters => {
+                    line.push(' ');
+                    line.extend(part);
+                }
+                _ => lines.push(part.iter().collect()),
+            }
+        }
     }
-    let start = &letters_of[..letters];
-    let cut = start
-        .iter()
-        .rposition(|&c| c == '_')
-        .map_or(letters, |at| at + 1);
-    let rest = letters_of[cut..].iter().take(letters);
-    [letters_of[..cut].iter().collect(), rest.collect()]
+    lines.truncate(LINES as usize);
+    lines
 }
 
 /// Rounds colours so that the page packs into half the file. Black and white stay.
@@ -92,12 +97,14 @@ mod tests {
     }
 
     #[test]
-    fn long_labels_break_after_an_underscore() {
-        assert_eq!(lines("wave", 10), ["wave".to_owned(), String::new()]);
+    fn long_labels_break_between_words() {
+        assert_eq!(lines("wave", 10), ["wave"]);
         assert_eq!(
             lines("walk_1_heel_strike_r", 13),
-            ["walk_1_heel_", "strike_r"]
+            ["walk 1 heel", "strike r"]
         );
-        assert_eq!(lines("abcdefgh", 3), ["abc", "def"]);
+        assert_eq!(lines("abcdefgh", 3), ["abc", "def", "gh"]);
+        assert_eq!(lines("a_b_c_d_e", 1), ["a", "b", "c"]);
+        assert_eq!(lines("", 4), Vec::<String>::new());
     }
 }
