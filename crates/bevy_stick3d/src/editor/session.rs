@@ -355,6 +355,7 @@ fn take_dropped_files(mut drops: MessageReader<FileDragAndDrop>, mut desk: Desk)
 mod tests {
     use bevy::asset::AssetPlugin;
     use bevy::ecs::system::RunSystemOnce;
+    use stick3d_model::files::write_atomically;
 
     use super::*;
     use crate::{EMBEDDED_MODELS, Stick3dPlugin, StickSketch};
@@ -470,7 +471,7 @@ mod tests {
         ];
         for (name, text) in bad {
             let path = folder.path().join(name);
-            std::fs::write(&path, text).unwrap();
+            write_atomically(&path, text.as_bytes()).unwrap();
             drop_file(&mut app, &path);
             let status = app.world().resource::<Session>().status.clone();
             let (said, is_problem) = status.shown().unwrap();

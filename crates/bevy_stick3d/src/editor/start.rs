@@ -163,6 +163,8 @@ fn figure_called(name: &str, figures: &[EditorFigure]) -> Result<usize, EditorEr
 
 #[cfg(test)]
 mod tests {
+    use stick3d_model::files::write_atomically;
+
     use super::*;
 
     #[test]
@@ -183,7 +185,7 @@ mod tests {
     fn a_bad_model_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("fox.stick3d");
-        std::fs::write(&path, b"no model").unwrap();
+        write_atomically(&path, b"no model").unwrap();
         let error = figures_to_draw(std::slice::from_ref(&path)).err().unwrap();
         assert_eq!(error.exit_code(), 1);
         assert!(error.to_string().contains("fox.stick3d"), "{error}");
