@@ -36,6 +36,14 @@ pub(super) struct Samples([u64; WORDS]);
 impl Samples {
     pub(super) const NONE: Self = Self([0; WORDS]);
 
+    pub(super) const ALL: Self = Self([u64::MAX; WORDS]);
+
+    pub(super) fn add(&mut self, other: &Self) {
+        for (word, other) in self.0.iter_mut().zip(&other.0) {
+            *word |= other;
+        }
+    }
+
     pub(super) fn contains(&self, sample: usize) -> bool {
         self.0.get(sample / 64).is_some_and(|word| word >> (sample % 64) & 1 == 1)
     }

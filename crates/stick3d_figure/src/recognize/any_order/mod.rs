@@ -159,4 +159,7 @@ fn confidence(
 }
 
 #[cfg(test)]
+thread_local!(static EXPANSIONS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) });
+
+#[cfg(test)]
 mod tests;

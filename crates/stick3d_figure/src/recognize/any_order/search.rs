@@ -1,6 +1,11 @@
 //! The search for the chains of a body on the lines of a drawing: chain after chain, the trunk first, with the
 //! likeliest partial readings kept.
 
+use std::cell::OnceCell;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::rc::Rc;
+
 use glam::Vec2;
 
 use super::body::{Body, Chain};
@@ -9,10 +14,13 @@ use super::marks::Marks;
 use super::ways::{Way, ways};
 use crate::recognize::ink::Ink;
 
-/// Partial readings kept after each chain.
-const BEAM: usize = 100;
-/// Those this much less likely than the best are dropped.
-const BEAM_COST: f32 = 40.0;
+/// Readings that are made longer before the search is given up; it bounds the work.
+const MAX_EXPANSIONS: usize = 400;
+/// When it is given up, so many of the likeliest are completed, each in so many ways.
+const MAX_COMPLETED: usize = 6;
+const BEAM: usize = 6;
+/// The search ends when all other readings are this much less likely than the best one.
+const SETTLED: f32 = 3.0;
 /// What ink costs that no bone explains, per tolerance length of it.
 const LEFTOVER_COST: f32 = 60.0;
 /// What a bone costs where its ink is that of another bone, per tolerance length of it.
@@ -67,14 +75,100 @@ struct Step {
     total_cost: f32,
 }
 
+/// A reading that is not finished.
+struct Open {
+    /// What a whole reading that begins like this costs at least.
+    least_cost: f32,
+    reading: Reading,
+    /// Per chain what it can do at best; none while there is only a rough guess.
+    rest: Option<Rc<[Rest]>>,
+}
+
+impl Open {
+    fn new(reading: Reading, rest: Option<Rc<[Rest]>>, search: &Search) -> Self {
+        let least_cost = match &rest {
+            Some(rest) => search.least_cost(&reading, rest),
+            None => search.least_cost(&reading, &search.rough_rest(&reading)),
+        };
+        Self {
+            least_cost,
+            reading,
+            rest,
+        }
+    }
+}
+
+/// What a chain can do for a reading at best, as if no other chain were there.
+#[derive(Clone, Debug)]
+struct Rest {
+    /// What it adds to the cost with leftover ink,
+    gain: f32,
+    /// and the second best of its ways.
+    second_gain: f32,
+    /// What it adds to the cost without leftover ink.
+    cost: f32,
+    /// The ink that it may explain.
+    reach: Samples,
+}
+
+impl Rest {
+    const MISSING: Self = Self {
+        gain: MISSING_COST,
+        second_gain: MISSING_COST,
+        cost: MISSING_COST,
+        reach: Samples::NONE,
+    };
+    const ANYTHING: Self = Self {
+        gain: f32::NEG_INFINITY,
+        second_gain: f32::NEG_INFINITY,
+        cost: 0.0,
+        reach: Samples::ALL,
+    };
+
+    fn consider(&mut self, gain: f32, cost: f32) {
+        if gain < self.gain {
+            (self.gain, self.second_gain) = (gain, self.gain);
+        } else {
+            self.second_gain = self.second_gain.min(gain);
+        }
+        self.cost = self.cost.min(cost);
+    }
+}
+
+// The heap gives its greatest first: that is the one of the least cost.
+impl Ord for Open {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let longer = self.reading.ways.len().cmp(&other.reading.ways.len());
+        other.least_cost.total_cmp(&self.least_cost).then(longer)
+    }
+}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Open {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Open {}
+
 pub(super) struct Search<'a> {
     pub(super) body: &'a Body,
     ink: &'a Ink,
     marks: &'a Marks,
-    lines: Lines,
+    pub(super) lines: Lines,
     places: Vec<Vec2>,
     /// The mark in the middle of the head's loop.
     head: Option<usize>,
+    /// Per chain and mark, once they are needed: the ways of the chain from there.
+    ways: Vec<OnceCell<Vec<Way>>>,
+    /// The same: what the best of them could do.
+    rough: Vec<OnceCell<Rest>>,
 }
 
 impl<'a> Search<'a> {
@@ -86,32 +180,166 @@ impl<'a> Search<'a> {
             ink,
             marks,
             lines: Lines::new(ink, marks),
+            rough: vec![OnceCell::new(); body.chains.len() * places.len()],
+            ways: vec![OnceCell::new(); body.chains.len() * places.len()],
             places,
             head: marks.head.as_ref().map(|_| marks.places.len()),
         }
     }
 
     /// Readings of the whole drawing, the likeliest first. None when not even the first chain is there.
+    ///
+    /// The first chain is tried everywhere. Readings are made longer by one chain at a time, always the one whose least
+    /// cost is the lowest (A*), until no other can do better than what was found.
     pub(super) fn run(&self) -> Vec<Reading> {
-        let all: f32 = self.marks.weights.iter().sum();
-        let mut readings: Vec<Reading> = (0..self.marks.places.len())
-            .map(|start| Reading {
-                cost: 0.0,
-                total_cost: 0.0,
-                covered: Samples::NONE,
-                leftover: all,
-                drawn: 0.0,
-                template: 0.0,
-                rotation: Vec2::X,
-                facing: 1.0,
-                start,
-                ways: Vec::new(),
-            })
-            .collect();
-        for chain in 0..self.body.chains.len() {
-            readings = self.with_chain(chain, &readings);
+        let mut open: BinaryHeap<Open> = self.trunks().into_iter().collect();
+        let mut found: Vec<Reading> = Vec::new();
+        let mut best = f32::INFINITY;
+        let mut expansions = 0;
+        while let Some(next) = open.pop() {
+            if next.least_cost > best + SETTLED || expansions > MAX_EXPANSIONS {
+                open.push(next);
+                break;
+            }
+            let index = next.reading.ways.len();
+            if index == self.body.chains.len() {
+                best = best.min(next.reading.total_cost);
+                found.push(next.reading);
+                continue;
+            }
+            let Some(rest) = next.rest else {
+                // A rough guess of what the rest of the body costs is made a better one only when it is needed.
+                let rest: Rc<[Rest]> = self.rest(&next.reading).into();
+                open.push(Open::new(next.reading, Some(rest), self));
+                continue;
+            };
+            expansions += 1;
+            for longer in self.with_chain(index, std::slice::from_ref(&next.reading), usize::MAX) {
+                let longer = Open::new(longer, Some(rest.clone()), self);
+                if longer.least_cost <= best + SETTLED {
+                    open.push(longer);
+                }
+            }
         }
-        readings
+        if found.is_empty() {
+            found = self.completed(open);
+        }
+        #[cfg(test)]
+        super::EXPANSIONS.with(|e| e.set(e.get() + expansions));
+        found.sort_by(|a, b| a.total_cost.total_cmp(&b.total_cost));
+        found
+    }
+
+    /// All places of the first chain.
+    fn trunks(&self) -> Vec<Open> {
+        let all: f32 = self.marks.weights.iter().sum();
+        let blank = |start| Reading {
+            cost: 0.0,
+            total_cost: 0.0,
+            covered: Samples::NONE,
+            leftover: all,
+            drawn: 0.0,
+            template: 0.0,
+            rotation: Vec2::X,
+            facing: 1.0,
+            start,
+            ways: Vec::new(),
+        };
+        let starts: Vec<Reading> = (0..self.marks.places.len()).map(blank).collect();
+        let trunks = self.with_chain(0, &starts, usize::MAX);
+        trunks.into_iter().map(|trunk| Open::new(trunk, None, self)).collect()
+    }
+
+    /// The likeliest of the unfinished readings, finished.
+    fn completed(&self, mut open: BinaryHeap<Open>) -> Vec<Reading> {
+        let mut found = Vec::new();
+        for _ in 0..MAX_COMPLETED {
+            let Some(next) = open.pop() else { break };
+            let mut readings = vec![next.reading];
+            for index in readings[0].ways.len()..self.body.chains.len() {
+                readings = self.with_chain(index, &readings, BEAM);
+            }
+            found.append(&mut readings);
+        }
+        found
+    }
+
+    /// What the other chains can do for a reading of the first one at best.
+    fn rest(&self, trunk: &Reading) -> Vec<Rest> {
+        let best_of = |index: usize, mark: usize| {
+            let mut rest = Rest::MISSING;
+            for (i, way) in self.ways_from(index, mark).iter().enumerate() {
+                let step = self.step(index, trunk, 0, Some((i, way)), 1.0, None);
+                let gain = step.total_cost - trunk.total_cost;
+                rest.consider(gain, step.cost - trunk.cost);
+                if gain < MISSING_COST {
+                    self.ink_of(way, &mut rest.reach);
+                }
+            }
+            rest
+        };
+        self.rest_of(trunk, best_of)
+    }
+
+    /// The same without regard to the trunk.
+    fn rough_rest(&self, trunk: &Reading) -> Vec<Rest> {
+        let unit = self.ink.tolerance_length;
+        let best_of = |index: usize, mark: usize| {
+            let rest = self.rough[index * self.places.len() + mark].get_or_init(|| {
+                let mut rest = Rest::MISSING;
+                for way in self.ways_from(index, mark) {
+                    self.ink_of(way, &mut rest.reach);
+                    let ink = self.ink_of(way, &mut Samples::NONE.clone()).0;
+                    rest.consider(way.cost - LEFTOVER_COST * ink / unit, way.cost);
+                }
+                rest
+            });
+            rest.clone()
+        };
+        self.rest_of(trunk, best_of)
+    }
+
+    fn rest_of(&self, trunk: &Reading, best_of: impl Fn(usize, usize) -> Rest) -> Vec<Rest> {
+        let chains = self.body.chains.iter().enumerate();
+        chains
+            .map(|(index, chain)| match (index, self.mark_of(trunk, chain.from)) {
+                (0, _) => Rest::MISSING,
+                (_, Some(mark)) => {
+                    let mut rest = best_of(index, mark);
+                    if chain.twin.is_some() {
+                        rest.gain = rest.second_gain;
+                    }
+                    rest
+                }
+                // It hangs on a chain that is not placed yet, and may explain anything.
+                (_, None) => Rest::ANYTHING,
+            })
+            .collect()
+    }
+
+    /// What a whole reading that begins like this one costs at least.
+    fn least_cost(&self, reading: &Reading, rest: &[Rest]) -> f32 {
+        let rest = &rest[reading.ways.len()..];
+        let unit = self.ink.tolerance_length;
+        let gain: f32 = rest.iter().map(|chain| chain.gain).sum();
+        let cost: f32 = rest.iter().map(|chain| chain.cost).sum();
+        let mut reached = reading.covered;
+        for chain in rest {
+            reached.add(&chain.reach);
+        }
+        let weights = self.marks.weights.iter().enumerate();
+        let out_of_reach: f32 =
+            weights.filter(|(sample, _)| !reached.contains(*sample)).map(|(_, weight)| weight).sum();
+        let alone = reading.total_cost + gain;
+        alone.max(reading.cost + cost + LEFTOVER_COST * out_of_reach / unit)
+    }
+
+    fn ways_from(&self, chain: usize, mark: usize) -> &[Way] {
+        self.ways[chain * self.places.len() + mark].get_or_init(|| {
+            let unit = self.ink.tolerance_length;
+            let chain = &self.body.chains[chain];
+            ways(chain, mark, &self.places, self.head, &self.lines, unit)
+        })
     }
 
     /// Where a reading puts the joints of the figure.
@@ -127,9 +355,8 @@ impl<'a> Search<'a> {
     }
 
     /// All readings with one more chain, the likeliest of them kept.
-    fn with_chain(&self, index: usize, readings: &[Reading]) -> Vec<Reading> {
+    fn with_chain(&self, index: usize, readings: &[Reading], keep: usize) -> Vec<Reading> {
         let chain = &self.body.chains[index];
-        let mut ways_from: Vec<Option<Vec<Way>>> = vec![None; self.places.len()];
         let mut steps = Vec::new();
         for (from, reading) in readings.iter().enumerate() {
             if index > 0 {
@@ -138,17 +365,13 @@ impl<'a> Search<'a> {
             let Some(mark) = self.mark_of(reading, chain.from) else {
                 continue;
             };
-            let ways = ways_from[mark].get_or_insert_with(|| {
-                let unit = self.ink.tolerance_length;
-                ways(chain, mark, &self.places, self.head, &self.lines, unit)
-            });
             // Twins are told apart later, so one order of the two is enough.
             let twin = chain.twin.map(|twin| reading.ways[twin].as_ref());
             if matches!(twin, Some(None)) {
                 continue;
             }
             let twin = twin.flatten();
-            for (i, way) in ways.iter().enumerate() {
+            for (i, way) in self.ways_from(index, mark).iter().enumerate() {
                 if twin.is_some_and(|twin| twin.marks > way.marks) {
                     continue;
                 }
@@ -158,17 +381,16 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        steps.sort_by(|a, b| a.total_cost.total_cmp(&b.total_cost));
-        let limit = steps.first().map_or(0.0, |best| best.total_cost + BEAM_COST);
-        steps.truncate(if index == 0 { 4 * BEAM } else { BEAM });
-        steps.retain(|step| step.total_cost <= limit);
+        if keep < steps.len() {
+            steps.sort_by(|a, b| a.total_cost.total_cmp(&b.total_cost));
+            steps.truncate(keep);
+        }
         steps
             .into_iter()
             .map(|step| {
                 let reading = &readings[step.from];
-                let mark = self.mark_of(reading, chain.from);
-                let ways = mark.and_then(|mark| ways_from[mark].as_ref());
-                let way = step.way.and_then(|way| ways.and_then(|ways| ways.get(way)));
+                let way = step.way.zip(self.mark_of(reading, chain.from));
+                let way = way.and_then(|(way, mark)| self.ways_from(index, mark).get(way));
                 self.grown(chain, reading, &step, way)
             })
             .collect()

@@ -67,6 +67,54 @@ fn survey() {
                 println!("{} {seed}: {error} cost {} confidence {} left {}", figure.name, found.cost, found.confidence, found.leftover);
             }
         }
-        println!("{}: {right} of {count}, {:?} each, {:?}", figure.name, spent / count as u32, started.elapsed());
+        println!("{}: {right} of {count}, {:?} each, {:?} {} expansions", figure.name, spent / count as u32, started.elapsed(), EXPANSIONS.with(|e| e.replace(0)) / count as usize);
+    }
+}
+
+#[test]
+fn dump() {
+    let Ok(which) = std::env::var("DUMP") else { return };
+    let Ok(seeds) = std::env::var("SEEDS") else { return };
+    let (figure, freedom) = if which == "human" { (Figure::human(), HUMAN_FREEDOM) } else { (Figure::horse(), HORSE_FREEDOM) };
+    for seed in seeds.split(',').map(|s| s.parse::<u64>().unwrap()) {
+        let (meant, mut rng) = readable(figure, seed, freedom);
+        let strokes = draw(figure, &mut rng, &meant, &[], hand(), Habits::default());
+        let found = recognize_any(figure, &strokes).unwrap();
+        let ink = Ink::new(&strokes).unwrap();
+        let marks = Marks::new(&ink);
+        let body = Body::new(figure);
+        let search = Search::new(&body, &ink, &marks);
+        let snap = |j: usize| {
+            if j == figure.path[0] && marks.head.is_some() { return (marks.places.len(), 0.0); }
+            let d = marks.places.iter().map(|p| p.distance(meant[j])).enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+            d
+        };
+        println!("{seed}: found cost {} left {} head {}", found.cost, found.leftover, marks.head.is_some());
+        for &[a, b] in &figure.bones {
+            let (p, q) = (snap(a), snap(b));
+            let line = search.lines.between(p.0, q.0);
+            println!("   {} {:?} - {} {:?}: {:?}", figure.joints[a].name, p, figure.joints[b].name, q, line.map(|l| l.cost));
+        }
+        let mut svg = String::from("<svg xmlns='http://www.w3.org/2000/svg' width='800' height='800' viewBox='0 0 800 800'><rect width='800' height='800' fill='white'/>");
+        let f = |p: Vec2| format!("{:.1},{:.1}", p.x, 800.0 - p.y);
+        for (i, s) in strokes.iter().enumerate() {
+            let pts: Vec<String> = s.positions().map(f).collect();
+            svg += &format!("<polyline points='{}' fill='none' stroke='hsl({},70%,70%)' stroke-width='3'/>", pts.join(" "), i * 67 % 360);
+        }
+        for p in &marks.places {
+            svg += &format!("<circle cx='{}' cy='{}' r='4' fill='none' stroke='black'/>", p.x, 800.0 - p.y);
+        }
+        if let Some(h) = &marks.head { svg += &format!("<circle cx='{}' cy='{}' r='{}' fill='none' stroke='red'/>", h.center.x, 800.0 - h.center.y, h.radius); }
+        for &[a, b] in &figure.bones {
+            svg += &format!("<polyline points='{} {}' stroke='green' stroke-width='1'/>", f(meant[a]), f(meant[b]));
+            if let (Some(p), Some(q)) = (found.joints[a], found.joints[b]) {
+                svg += &format!("<polyline points='{} {}' stroke='red' stroke-width='1' stroke-dasharray='4 4'/>", f(p), f(q));
+            }
+        }
+        for (j, p) in found.joints.iter().enumerate() {
+            if let Some(p) = p { svg += &format!("<text x='{}' y='{}' font-size='13' fill='red'>{}</text>", p.x + 4.0, 800.0 - p.y, figure.joints[j].name); }
+        }
+        svg += "</svg>";
+        std::fs::write(format!("/tmp/any_{which}_{seed}.svg"), svg).unwrap();
     }
 }
