@@ -10,6 +10,7 @@ mod body;
 mod lines;
 mod marks;
 mod search;
+mod settle;
 pub(crate) mod sides;
 mod ways;
 
@@ -97,7 +98,7 @@ pub fn recognize_any(figure: &Figure, strokes: &[Stroke]) -> Result<AnyOrder, Re
     let search = Search::new(&body, &ink, &marks);
     let readings = search.run();
     let mut joints = match readings.first() {
-        Some(best) => search.joints(best),
+        Some(best) => settle::settled(&search, best),
         None => head_alone(&body, &marks),
     };
     let pairs = sides::put_on_sides(figure, &mut joints);
@@ -108,7 +109,7 @@ pub fn recognize_any(figure: &Figure, strokes: &[Stroke]) -> Result<AnyOrder, Re
         missing: missing(&body, &joints),
         ambiguous: ambiguous.collect(),
         cost: best.map_or(f32::INFINITY, |best| best.total_cost),
-        confidence: confidence(figure, &search, &readings, &joints, SAME_READING * ink.diagonal),
+        confidence: confidence(figure, &search, &readings, SAME_READING * ink.diagonal),
         leftover: best.map_or(1.0, |best| (best.leftover / total).clamp(0.0, 1.0)),
         joints,
     })
@@ -138,16 +139,19 @@ fn confidence(
     figure: &Figure,
     search: &Search,
     readings: &[Reading],
-    joints: &[Option<Vec2>],
     near: f32,
 ) -> f32 {
     let Some(best) = readings.first() else {
         return 0.0;
     };
+    let joints = |reading: &Reading| {
+        let mut joints = search.joints(reading);
+        sides::put_on_sides(figure, &mut joints);
+        joints
+    };
+    let expected = joints(best);
     let is_same = |reading: &Reading| {
-        let mut other = search.joints(reading);
-        sides::put_on_sides(figure, &mut other);
-        other.iter().zip(joints).all(|pair| match pair {
+        joints(reading).iter().zip(&expected).all(|pair| match pair {
             (Some(a), Some(b)) => a.distance(*b) <= near,
             (a, b) => a.is_none() == b.is_none(),
         })

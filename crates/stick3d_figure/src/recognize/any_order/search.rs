@@ -342,6 +342,23 @@ impl<'a> Search<'a> {
         })
     }
 
+    /// The length that tolerances are parts of.
+    pub(super) fn unit(&self) -> f32 {
+        self.ink.tolerance_length
+    }
+
+    /// The ink of a way and the lengths it stands for.
+    pub(super) fn points_of(&self, way: &Way) -> Vec<(Vec2, f32)> {
+        let lines = way.marks.windows(2).filter_map(|pair| {
+            self.lines.between(usize::from(pair[0]), usize::from(pair[1]))
+        });
+        let touches = lines.flat_map(|line| &line.touches).filter(|touch| touch.bin.is_some());
+        touches
+            .map(|touch| usize::from(touch.sample))
+            .map(|sample| (self.ink.samples[sample], self.marks.weights[sample]))
+            .collect()
+    }
+
     /// Where a reading puts the joints of the figure.
     pub(super) fn joints(&self, reading: &Reading) -> Vec<Option<Vec2>> {
         let mut joints = vec![None; self.body.joint_count];

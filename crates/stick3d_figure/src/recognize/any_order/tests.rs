@@ -96,6 +96,7 @@ fn dump() {
             println!("   {} {:?} - {} {:?}: {:?}", figure.joints[a].name, p, figure.joints[b].name, q, line.map(|l| l.cost));
         }
         let mut svg = String::from("<svg xmlns='http://www.w3.org/2000/svg' width='800' height='800' viewBox='0 0 800 800'><rect width='800' height='800' fill='white'/>");
+        let error = farthest_up_to_sides(figure, &found.joints, &meant); println!("{error}");
         let f = |p: Vec2| format!("{:.1},{:.1}", p.x, 800.0 - p.y);
         for (i, s) in strokes.iter().enumerate() {
             let pts: Vec<String> = s.positions().map(f).collect();
