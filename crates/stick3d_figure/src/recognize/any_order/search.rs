@@ -15,7 +15,7 @@ use super::ways::{Way, ways};
 use crate::recognize::ink::Ink;
 
 /// Readings that are made longer before the search is given up; it bounds the work.
-const MAX_EXPANSIONS: usize = 400;
+const MAX_EXPANSIONS: usize = 10000;
 /// When it is given up, so many of the likeliest are completed, each in so many ways.
 const MAX_COMPLETED: usize = 6;
 const BEAM: usize = 6;
@@ -28,7 +28,7 @@ const SHARED_COST: f32 = 45.0;
 /// What a chain costs that is not drawn,
 const MISSING_COST: f32 = 5.0;
 /// and one of which only the beginning is.
-const BEGUN_COST: f32 = 4.0;
+const BEGUN_COST: f32 = 6.0;
 /// What a body upside down costs, and a bone that points against its direction in the template: in the middle of
 /// the body, at its sides, and for the later bones of a chain.
 const ROLL_COST: f32 = 1.0;
@@ -62,7 +62,7 @@ pub(super) struct Reading {
     facing: f32,
     start: usize,
     /// Per chain the way it takes; none where it is missing.
-    pub(super) ways: Vec<Option<Way>>,
+    pub(super) ways: Vec<Option<Rc<Way>>>,
 }
 
 /// One step from a reading to a longer one.
@@ -166,7 +166,7 @@ pub(super) struct Search<'a> {
     /// The mark in the middle of the head's loop.
     head: Option<usize>,
     /// Per chain and mark, once they are needed: the ways of the chain from there.
-    ways: Vec<OnceCell<Vec<Way>>>,
+    ways: Vec<OnceCell<Vec<Rc<Way>>>>,
     /// The same: what the best of them could do.
     rough: Vec<OnceCell<Rest>>,
 }
@@ -334,11 +334,12 @@ impl<'a> Search<'a> {
         alone.max(reading.cost + cost + LEFTOVER_COST * out_of_reach / unit)
     }
 
-    fn ways_from(&self, chain: usize, mark: usize) -> &[Way] {
+    fn ways_from(&self, chain: usize, mark: usize) -> &[Rc<Way>] {
         self.ways[chain * self.places.len() + mark].get_or_init(|| {
             let unit = self.ink.tolerance_length;
             let chain = &self.body.chains[chain];
-            ways(chain, mark, &self.places, self.head, &self.lines, unit)
+            let ways = ways(chain, mark, &self.places, self.head, &self.lines, unit);
+            ways.into_iter().map(Rc::new).collect()
         })
     }
 
@@ -383,7 +384,7 @@ impl<'a> Search<'a> {
                 continue;
             };
             // Twins are told apart later, so one order of the two is enough.
-            let twin = chain.twin.map(|twin| reading.ways[twin].as_ref());
+            let twin = chain.twin.map(|twin| reading.ways[twin].as_deref());
             if matches!(twin, Some(None)) {
                 continue;
             }
@@ -464,7 +465,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn grown(&self, chain: &Chain, reading: &Reading, step: &Step, way: Option<&Way>) -> Reading {
+    fn grown(&self, chain: &Chain, reading: &Reading, step: &Step, way: Option<&Rc<Way>>) -> Reading {
         let mut grown = Reading {
             cost: step.cost,
             total_cost: step.total_cost,

@@ -14,6 +14,16 @@ fn hand() -> Hand {
     Hand { height_px: HEIGHT_PX, jitter_px: 3.0, ..Hand::default() }
 }
 
+fn habits(figure: &Figure) -> Habits {
+    let habits = Habits::default();
+    if figure.views.both_ways {
+        // A long neck carries a small head.
+        Habits { loop_radius: (0.15, 0.3), ..habits }
+    } else {
+        habits
+    }
+}
+
 fn farthest(found: &[Option<Vec2>], meant: &[Vec2]) -> f32 {
     let pairs = found.iter().zip(meant);
     pairs
@@ -56,7 +66,7 @@ fn survey() {
         let mut spent = std::time::Duration::ZERO;
         for seed in 0..count {
             let (meant, mut rng) = readable(figure, seed, freedom);
-            let strokes = draw(figure, &mut rng, &meant, &[], hand(), Habits::default());
+            let strokes = draw(figure, &mut rng, &meant, &[], hand(), habits(figure));
             let before = std::time::Instant::now();
             let found = recognize_any(figure, &strokes).unwrap();
             spent += before.elapsed();
@@ -78,7 +88,7 @@ fn dump() {
     let (figure, freedom) = if which == "human" { (Figure::human(), HUMAN_FREEDOM) } else { (Figure::horse(), HORSE_FREEDOM) };
     for seed in seeds.split(',').map(|s| s.parse::<u64>().unwrap()) {
         let (meant, mut rng) = readable(figure, seed, freedom);
-        let strokes = draw(figure, &mut rng, &meant, &[], hand(), Habits::default());
+        let strokes = draw(figure, &mut rng, &meant, &[], hand(), habits(figure));
         let found = recognize_any(figure, &strokes).unwrap();
         let ink = Ink::new(&strokes).unwrap();
         let marks = Marks::new(&ink);
@@ -95,7 +105,7 @@ fn dump() {
             let line = search.lines.between(p.0, q.0);
             println!("   {} {:?} - {} {:?}: {:?}", figure.joints[a].name, p, figure.joints[b].name, q, line.map(|l| l.cost));
         }
-        let mut svg = String::from("<svg xmlns='http://www.w3.org/2000/svg' width='800' height='800' viewBox='0 0 800 800'><rect width='800' height='800' fill='white'/>");
+        let mut svg = String::from("<svg xmlns='http://www.w3.org/2000/svg' width='800' height='800' viewBox='-200 0 1100 1100'><rect x='-200' width='1100' height='1100' fill='white'/>");
         let error = farthest_up_to_sides(figure, &found.joints, &meant); println!("{error}");
         let f = |p: Vec2| format!("{:.1},{:.1}", p.x, 800.0 - p.y);
         for (i, s) in strokes.iter().enumerate() {
