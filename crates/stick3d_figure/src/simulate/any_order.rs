@@ -1,8 +1,8 @@
 //! A person who draws in any order: strokes cut, turned round and shuffled at will, a head as a loop, limbs left out.
 
 use glam::Vec2;
-use rand::seq::SliceRandom;
 use rand::Rng;
+use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 use super::{Hand, line, wobble};
@@ -43,15 +43,29 @@ pub(crate) struct Freedom {
 }
 
 /// Freely moving, arms raised and crossing.
-pub(crate) const HUMAN_FREEDOM: Freedom = Freedom { roll: 35.0, center: 30.0, first: 110.0, later: 100.0 };
+pub(crate) const HUMAN_FREEDOM: Freedom = Freedom {
+    roll: 35.0,
+    center: 30.0,
+    first: 110.0,
+    later: 100.0,
+};
 /// Walking, grazing, rearing.
-pub(crate) const HORSE_FREEDOM: Freedom = Freedom { roll: 25.0, center: 35.0, first: 28.0, later: 30.0 };
+pub(crate) const HORSE_FREEDOM: Freedom = Freedom {
+    roll: 25.0,
+    center: 35.0,
+    first: 28.0,
+    later: 30.0,
+};
 
 /// The template with its bones turned in the plane and lengthened or shortened by up to 15 %, metres. A bone's angle is
 /// relative to the bone it hangs on.
 pub(crate) fn flat_pose(figure: &Figure, rng: &mut ChaCha8Rng, freedom: Freedom) -> Vec<Vec2> {
     let facing = Vec2::new(
-        if figure.views.both_ways && rng.random::<bool>() { -1.0 } else { 1.0 },
+        if figure.views.both_ways && rng.random::<bool>() {
+            -1.0
+        } else {
+            1.0
+        },
         1.0,
     );
     let mut placed: Vec<Option<(Vec2, f32)>> = vec![None; figure.joint_count()];
@@ -64,7 +78,9 @@ pub(crate) fn flat_pose(figure: &Figure, rng: &mut ChaCha8Rng, freedom: Freedom)
                 (None, Some(_)) => (b, a),
                 _ => continue,
             };
-            let Some((at, turned)) = placed[from] else { continue };
+            let Some((at, turned)) = placed[from] else {
+                continue;
+            };
             let sides = [figure.joints[from].side, figure.joints[to].side];
             let far = match sides {
                 [Side::Center, Side::Center] => freedom.center,
@@ -83,7 +99,12 @@ pub(crate) fn flat_pose(figure: &Figure, rng: &mut ChaCha8Rng, freedom: Freedom)
 /// Whether a flat drawing of the pose says where its joints are: limbs are not folded flat, ends do not lie on the
 /// bones of other limbs.
 pub(crate) fn is_readable(figure: &Figure, joints: &[Vec2]) -> bool {
-    let bones_at = |joint: usize| figure.bones.iter().filter(move |bone| bone.contains(&joint));
+    let bones_at = |joint: usize| {
+        figure
+            .bones
+            .iter()
+            .filter(move |bone| bone.contains(&joint))
+    };
     let unfolded = (0..joints.len()).all(|joint| {
         let other = |bone: &[usize; 2]| joints[bone[0] + bone[1] - joint] - joints[joint];
         bones_at(joint).all(|one| {
@@ -92,12 +113,16 @@ pub(crate) fn is_readable(figure: &Figure, joints: &[Vec2]) -> bool {
     });
     unfolded
         && (0..joints.len()).all(|joint| {
-            figure.bones.iter().filter(|bone| !bone.contains(&joint)).all(|&[a, b]| {
-                let line = joints[b] - joints[a];
-                let along = (joints[joint] - joints[a]).dot(line) / line.length_squared();
-                let nearest = joints[a] + line * along.clamp(0.0, 1.0);
-                joints[joint].distance(nearest) > 0.07
-            })
+            figure
+                .bones
+                .iter()
+                .filter(|bone| !bone.contains(&joint))
+                .all(|&[a, b]| {
+                    let line = joints[b] - joints[a];
+                    let along = (joints[joint] - joints[a]).dot(line) / line.length_squared();
+                    let nearest = joints[a] + line * along.clamp(0.0, 1.0);
+                    joints[joint].distance(nearest) > 0.07
+                })
         })
 }
 
@@ -129,7 +154,9 @@ pub(crate) fn draw(
         let mut walk = if rng.random() { vec![a, b] } else { vec![b, a] };
         while rng.random_bool(habits.go_on) {
             let at = walk[walk.len() - 1];
-            let Some(next) = left.iter().position(|bone| bone.contains(&at)) else { break };
+            let Some(next) = left.iter().position(|bone| bone.contains(&at)) else {
+                break;
+            };
             let [a, b] = left.remove(next);
             walk.push(a + b - at);
         }
@@ -175,9 +202,15 @@ fn looped(rng: &mut ChaCha8Rng, center: Vec2, neck: Vec2, habits: Habits) -> Vec
         center + down * radius * tall * cos + down.perp() * radius * sin
     };
     // A loop is seldom closed exactly.
-    let begin = if rng.random() { 0.0 } else { rng.random_range(0.0..std::f32::consts::TAU) };
+    let begin = if rng.random() {
+        0.0
+    } else {
+        rng.random_range(0.0..std::f32::consts::TAU)
+    };
     let whole = std::f32::consts::TAU * rng.random_range(0.96..1.05);
-    let mut ring: Vec<Vec2> = (0..=24).map(|i| point(begin + whole * i as f32 / 24.0)).collect();
+    let mut ring: Vec<Vec2> = (0..=24)
+        .map(|i| point(begin + whole * i as f32 / 24.0))
+        .collect();
     let line = vec![point(0.0), neck];
     if begin == 0.0 && rng.random() {
         ring.push(neck);

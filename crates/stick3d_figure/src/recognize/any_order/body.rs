@@ -129,7 +129,12 @@ fn start(figure: &Figure, neighbours: &[Vec<usize>]) -> usize {
             end = joint;
         }
         seen[joint] = true;
-        queue.extend(neighbours[joint].iter().copied().filter(|&next| !seen[next]));
+        queue.extend(
+            neighbours[joint]
+                .iter()
+                .copied()
+                .filter(|&next| !seen[next]),
+        );
     }
     end
 }

@@ -45,7 +45,9 @@ impl Samples {
     }
 
     pub(super) fn contains(&self, sample: usize) -> bool {
-        self.0.get(sample / 64).is_some_and(|word| word >> (sample % 64) & 1 == 1)
+        self.0
+            .get(sample / 64)
+            .is_some_and(|word| word >> (sample % 64) & 1 == 1)
     }
 
     /// Adds a sample and says whether it is new.
@@ -95,8 +97,12 @@ pub(super) struct Lines {
 
 impl Lines {
     pub(super) fn new(ink: &Ink, marks: &Marks) -> Self {
-        let places: Vec<Vec2> =
-            marks.places.iter().copied().chain(marks.head.iter().map(|head| head.center)).collect();
+        let places: Vec<Vec2> = marks
+            .places
+            .iter()
+            .copied()
+            .chain(marks.head.iter().map(|head| head.center))
+            .collect();
         let count = places.len();
         let mut lines = vec![None; count * count];
         for b in 0..count {
@@ -134,7 +140,10 @@ fn line(ink: &Ink, marks: &Marks, [from, to]: [Vec2; 2], head: Option<&Head>) ->
     let (mut squares, mut weight) = (0.0, 0.0);
     for (sample, &p) in ink.samples.iter().enumerate() {
         if head.is_some_and(|head| head.samples.contains(&sample)) {
-            touches.push(Touch { sample: sample as u16, bin: None });
+            touches.push(Touch {
+                sample: sample as u16,
+                bin: None,
+            });
             continue;
         }
         let (along, beside) = (direction.dot(p - from), direction.perp_dot(p - from));
@@ -144,13 +153,19 @@ fn line(ink: &Ink, marks: &Marks, [from, to]: [Vec2; 2], head: Option<&Head>) ->
         let is_inner = (0.0..=length).contains(&along);
         let aligned = marks.tangents[sample].dot(direction).abs() >= MIN_ALIGNMENT;
         if is_inner && aligned && beside.abs() <= width {
-            touches.push(Touch { sample: sample as u16, bin: Some(bin_of(along) as u8) });
+            touches.push(Touch {
+                sample: sample as u16,
+                bin: Some(bin_of(along) as u8),
+            });
             let reach = 0.75 * marks.weights[sample];
             drawn[bin_of(along - reach)..=bin_of(along + reach)].fill(true);
             squares += marks.weights[sample] * beside * beside;
             weight += marks.weights[sample];
         } else if p.distance(from).min(p.distance(to)) <= near_end {
-            touches.push(Touch { sample: sample as u16, bin: None });
+            touches.push(Touch {
+                sample: sample as u16,
+                bin: None,
+            });
         }
     }
     let free: Vec<bool> = (0..drawn.len())
@@ -159,7 +174,11 @@ fn line(ink: &Ink, marks: &Marks, [from, to]: [Vec2; 2], head: Option<&Head>) ->
             along < near_end || along > length - near_end.max(1.1 * inside)
         })
         .collect();
-    let gap = drawn.iter().zip(&free).filter(|(drawn, free)| !**drawn && !**free).count();
+    let gap = drawn
+        .iter()
+        .zip(&free)
+        .filter(|(drawn, free)| !**drawn && !**free)
+        .count();
     let gap = gap as f32 / bins * length;
     if gap > MAX_GAP * length || (weight <= 0.0 && head.is_none()) {
         return None;

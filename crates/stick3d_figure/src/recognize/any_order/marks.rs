@@ -74,7 +74,10 @@ fn along(ink: &Ink) -> (Vec<f32>, Vec<Vec2>) {
     let mut tangents = vec![Vec2::ZERO; ink.samples.len()];
     for stroke in &ink.strokes {
         for i in stroke.clone() {
-            let (before, after) = (i.saturating_sub(1).max(stroke.start), (i + 1).min(stroke.end - 1));
+            let (before, after) = (
+                i.saturating_sub(1).max(stroke.start),
+                (i + 1).min(stroke.end - 1),
+            );
             weights[i] = 0.5 * ink.arc_between(before, after);
             tangents[i] = (ink.samples[after] - ink.samples[before]).normalize_or_zero();
         }
@@ -97,7 +100,10 @@ fn find_head(ink: &Ink) -> Option<Head> {
                 if to - from < MIN_LOOP_SAMPLES || roundness < MIN_ROUNDNESS {
                     continue;
                 }
-                if best.as_ref().is_some_and(|(rounder, _)| *rounder >= roundness) {
+                if best
+                    .as_ref()
+                    .is_some_and(|(rounder, _)| *rounder >= roundness)
+                {
                     continue;
                 }
                 if let Some(head) = as_head(ink, from..to + 1, opening) {
@@ -114,7 +120,11 @@ fn as_head(ink: &Ink, samples: Range<usize>, opening: f32) -> Option<Head> {
     let count = points.len() as f32;
     let center = points.iter().sum::<Vec2>() / count;
     let radius = points.iter().map(|p| p.distance(center)).sum::<f32>() / count;
-    let variance = points.iter().map(|p| (p.distance(center) - radius).powi(2)).sum::<f32>() / count;
+    let variance = points
+        .iter()
+        .map(|p| (p.distance(center) - radius).powi(2))
+        .sum::<f32>()
+        / count;
     let is_head = HEAD_RADIUS.contains(&(radius / ink.tolerance_length))
         && variance.sqrt() < MAX_RADIUS_SPREAD * radius
         && opening < MAX_OPENING * radius;
@@ -136,7 +146,10 @@ fn without_head(ink: &Ink, head: Option<&Head>) -> Vec<Range<usize>> {
             pieces.push(stroke.clone());
             continue;
         }
-        let rest = [stroke.start..head.samples.start + 1, head.samples.end - 1..stroke.end];
+        let rest = [
+            stroke.start..head.samples.start + 1,
+            head.samples.end - 1..stroke.end,
+        ];
         pieces.extend(rest.into_iter().filter(|piece| {
             piece.len() > 1
                 && ink.arc_between(piece.start, piece.end - 1) > LOOP_TAIL * ink.tolerance_length
@@ -218,7 +231,9 @@ fn merged(ends: &[Vec2], crossings: &[Vec2], radius: f32) -> Vec<Vec2> {
 /// the order hardly matters.
 fn grouped(places: &[Vec2], radius: f32) -> Vec<Vec2> {
     let nearest = |sums: &[(Vec2, f32)], place: Vec2| {
-        let away = sums.iter().map(|(sum, count)| (*sum / *count).distance(place));
+        let away = sums
+            .iter()
+            .map(|(sum, count)| (*sum / *count).distance(place));
         away.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
     };
     let mut gathered: Vec<(Vec2, f32)> = Vec::new();
@@ -239,5 +254,8 @@ fn grouped(places: &[Vec2], radius: f32) -> Vec<Vec2> {
         }
     }
     settled.retain(|(_, count)| *count > 0.0);
-    settled.into_iter().map(|(sum, count)| sum / count).collect()
+    settled
+        .into_iter()
+        .map(|(sum, count)| sum / count)
+        .collect()
 }

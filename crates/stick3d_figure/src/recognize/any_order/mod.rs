@@ -17,8 +17,8 @@ mod ways;
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
-use super::ink::{Ink, MAX_STROKES};
 use super::RecognizeError;
+use super::ink::{Ink, MAX_STROKES};
 use crate::figure::Figure;
 use crate::sketch::Sketch;
 use crate::stroke::Stroke;
@@ -102,7 +102,9 @@ pub fn recognize_any(figure: &Figure, strokes: &[Stroke]) -> Result<AnyOrder, Re
         None => head_alone(&body, &marks),
     };
     let pairs = sides::put_on_sides(figure, &mut joints);
-    let ambiguous = pairs.iter().filter_map(|pair| Some([*pair.left.first()?, *pair.right.first()?]));
+    let ambiguous = pairs
+        .iter()
+        .filter_map(|pair| Some([*pair.left.first()?, *pair.right.first()?]));
     let total: f32 = marks.weights.iter().sum();
     let best = readings.first();
     Ok(AnyOrder {
@@ -127,7 +129,11 @@ fn head_alone(body: &Body, marks: &Marks) -> Vec<Option<Vec2>> {
 
 fn missing(body: &Body, joints: &[Option<Vec2>]) -> Vec<Vec<usize>> {
     let undrawn = body.chains.iter().map(|chain| {
-        let joints = chain.joints.iter().copied().filter(|&joint| joints[joint].is_none());
+        let joints = chain
+            .joints
+            .iter()
+            .copied()
+            .filter(|&joint| joints[joint].is_none());
         joints.collect::<Vec<usize>>()
     });
     undrawn.filter(|chain| !chain.is_empty()).collect()
@@ -135,12 +141,7 @@ fn missing(body: &Body, joints: &[Option<Vec2>]) -> Vec<Vec<usize>> {
 
 /// The share of the best reading among all that are as good, those left out that put the same joints elsewhere by a
 /// hair.
-fn confidence(
-    figure: &Figure,
-    search: &Search,
-    readings: &[Reading],
-    near: f32,
-) -> f32 {
+fn confidence(figure: &Figure, search: &Search, readings: &[Reading], near: f32) -> f32 {
     let Some(best) = readings.first() else {
         return 0.0;
     };
@@ -151,10 +152,13 @@ fn confidence(
     };
     let expected = joints(best);
     let is_same = |reading: &Reading| {
-        joints(reading).iter().zip(&expected).all(|pair| match pair {
-            (Some(a), Some(b)) => a.distance(*b) <= near,
-            (a, b) => a.is_none() == b.is_none(),
-        })
+        joints(reading)
+            .iter()
+            .zip(&expected)
+            .all(|pair| match pair {
+                (Some(a), Some(b)) => a.distance(*b) <= near,
+                (a, b) => a.is_none() == b.is_none(),
+            })
     };
     // Readings come in the order of their likelihood, so the first other one is the strongest rival.
     let rival = readings.iter().skip(1).find(|reading| !is_same(reading));

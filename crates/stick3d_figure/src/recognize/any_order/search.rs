@@ -247,7 +247,10 @@ impl<'a> Search<'a> {
         };
         let starts: Vec<Reading> = (0..self.marks.places.len()).map(blank).collect();
         let trunks = self.with_chain(0, &starts, usize::MAX);
-        trunks.into_iter().map(|trunk| Open::new(trunk, None, self)).collect()
+        trunks
+            .into_iter()
+            .map(|trunk| Open::new(trunk, None, self))
+            .collect()
     }
 
     /// The likeliest of the unfinished readings, finished.
@@ -302,18 +305,20 @@ impl<'a> Search<'a> {
     fn rest_of(&self, trunk: &Reading, best_of: impl Fn(usize, usize) -> Rest) -> Vec<Rest> {
         let chains = self.body.chains.iter().enumerate();
         chains
-            .map(|(index, chain)| match (index, self.mark_of(trunk, chain.from)) {
-                (0, _) => Rest::MISSING,
-                (_, Some(mark)) => {
-                    let mut rest = best_of(index, mark);
-                    if chain.twin.is_some() {
-                        rest.gain = rest.second_gain;
+            .map(
+                |(index, chain)| match (index, self.mark_of(trunk, chain.from)) {
+                    (0, _) => Rest::MISSING,
+                    (_, Some(mark)) => {
+                        let mut rest = best_of(index, mark);
+                        if chain.twin.is_some() {
+                            rest.gain = rest.second_gain;
+                        }
+                        rest
                     }
-                    rest
-                }
-                // It hangs on a chain that is not placed yet, and may explain anything.
-                (_, None) => Rest::ANYTHING,
-            })
+                    // It hangs on a chain that is not placed yet, and may explain anything.
+                    (_, None) => Rest::ANYTHING,
+                },
+            )
             .collect()
     }
 
@@ -328,8 +333,10 @@ impl<'a> Search<'a> {
             reached.add(&chain.reach);
         }
         let weights = self.marks.weights.iter().enumerate();
-        let out_of_reach: f32 =
-            weights.filter(|(sample, _)| !reached.contains(*sample)).map(|(_, weight)| weight).sum();
+        let out_of_reach: f32 = weights
+            .filter(|(sample, _)| !reached.contains(*sample))
+            .map(|(_, weight)| weight)
+            .sum();
         let alone = reading.total_cost + gain;
         alone.max(reading.cost + cost + LEFTOVER_COST * out_of_reach / unit)
     }
@@ -351,9 +358,12 @@ impl<'a> Search<'a> {
     /// The ink of a way and the lengths it stands for.
     pub(super) fn points_of(&self, way: &Way) -> Vec<(Vec2, f32)> {
         let lines = way.marks.windows(2).filter_map(|pair| {
-            self.lines.between(usize::from(pair[0]), usize::from(pair[1]))
+            self.lines
+                .between(usize::from(pair[0]), usize::from(pair[1]))
         });
-        let touches = lines.flat_map(|line| &line.touches).filter(|touch| touch.bin.is_some());
+        let touches = lines
+            .flat_map(|line| &line.touches)
+            .filter(|touch| touch.bin.is_some());
         touches
             .map(|touch| usize::from(touch.sample))
             .map(|sample| (self.ink.samples[sample], self.marks.weights[sample]))
@@ -365,7 +375,11 @@ impl<'a> Search<'a> {
         let mut joints = vec![None; self.body.joint_count];
         joints[self.body.start] = self.places.get(reading.start).copied();
         for (chain, way) in self.body.chains.iter().zip(&reading.ways) {
-            for (joint, place) in chain.joints.iter().zip(way.iter().flat_map(|way| &way.places)) {
+            for (joint, place) in chain
+                .joints
+                .iter()
+                .zip(way.iter().flat_map(|way| &way.places))
+            {
                 joints[*joint] = Some(*place);
             }
         }
@@ -418,7 +432,11 @@ impl<'a> Search<'a> {
         if joint == self.body.start {
             return Some(reading.start);
         }
-        let chain = self.body.chains.iter().position(|chain| chain.end() == joint)?;
+        let chain = self
+            .body
+            .chains
+            .iter()
+            .position(|chain| chain.end() == joint)?;
         let way = reading.ways.get(chain)?.as_ref()?;
         way.marks.last().map(|mark| usize::from(*mark))
     }
@@ -465,7 +483,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn grown(&self, chain: &Chain, reading: &Reading, step: &Step, way: Option<&Rc<Way>>) -> Reading {
+    fn grown(
+        &self,
+        chain: &Chain,
+        reading: &Reading,
+        step: &Step,
+        way: Option<&Rc<Way>>,
+    ) -> Reading {
         let mut grown = Reading {
             cost: step.cost,
             total_cost: step.total_cost,
@@ -498,7 +522,10 @@ impl<'a> Search<'a> {
     fn ink_of(&self, way: &Way, covered: &mut Samples) -> (f32, f32) {
         let (mut new, mut shared) = (0.0, 0.0);
         for pair in way.marks.windows(2) {
-            let Some(line) = self.lines.between(usize::from(pair[0]), usize::from(pair[1])) else {
+            let Some(line) = self
+                .lines
+                .between(usize::from(pair[0]), usize::from(pair[1]))
+            else {
                 continue;
             };
             let bin_length = line.bin_length();
@@ -533,7 +560,11 @@ impl<'a> Search<'a> {
     fn length_cost(&self, chain: &Chain, reading: &Reading, way: &Way) -> f32 {
         let least_scale = self.ink.diagonal / self.body.reach;
         let is_first = reading.template <= 0.0;
-        let scale = if is_first { least_scale } else { reading.drawn / reading.template };
+        let scale = if is_first {
+            least_scale
+        } else {
+            reading.drawn / reading.template
+        };
         let count = way.bones.len();
         let mut cost = 0.0;
         for (i, (bone, length)) in way.bones.iter().zip(&chain.lengths).enumerate() {
@@ -578,7 +609,9 @@ fn symmetry_cost(way: &Way, twin: Option<&Way>) -> f32 {
     let bones = way.bones.iter().zip(&twin.bones);
     bones
         .map(|(a, b)| {
-            let ratio = (a.length() / b.length().max(f32::MIN_POSITIVE)).max(1.0e-3).ln();
+            let ratio = (a.length() / b.length().max(f32::MIN_POSITIVE))
+                .max(1.0e-3)
+                .ln();
             (0.5 * (ratio / SYMMETRY_SPREAD).powi(2)).min(2.5)
         })
         .sum()

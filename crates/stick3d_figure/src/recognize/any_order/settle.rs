@@ -23,14 +23,21 @@ pub(super) fn settled(search: &Search, reading: &Reading) -> Vec<Option<Vec2>> {
     for (chain, way) in search.body.chains.iter().zip(&reading.ways) {
         let Some(way) = way else { continue };
         let ink = search.points_of(way);
-        let row: Vec<usize> = std::iter::once(chain.from).chain(chain.joints.iter().copied()).collect();
+        let row: Vec<usize> = std::iter::once(chain.from)
+            .chain(chain.joints.iter().copied())
+            .collect();
         for _ in 0..ROUNDS {
             for (middle, three) in row.windows(3).enumerate() {
                 if let (Some(before), Some(at), Some(after)) =
                     (joints[three[0]], joints[three[1]], joints[three[2]])
                 {
-                    joints[three[1]] =
-                        Some(settle(chain, middle, [before, at, after], &ink, search.unit()));
+                    joints[three[1]] = Some(settle(
+                        chain,
+                        middle,
+                        [before, at, after],
+                        &ink,
+                        search.unit(),
+                    ));
                 }
             }
         }
@@ -61,7 +68,10 @@ fn settle(
         let squares: f32 = near
             .iter()
             .map(|(p, weight)| {
-                weight * from_line(*p, before, place).min(from_line(*p, place, after)).powi(2)
+                weight
+                    * from_line(*p, before, place)
+                        .min(from_line(*p, place, after))
+                        .powi(2)
             })
             .sum();
         let bend = 0.5 * independent * squares / weight.max(f32::MIN_POSITIVE) / (sigma * sigma);

@@ -87,7 +87,9 @@ impl Frame {
             .filter_map(|joint| Some((figure.template[joint], (*joints.get(joint)?)?)))
             .collect();
         let count = middle.len() as f32;
-        let sums = middle.iter().fold((Vec2::ZERO, Vec2::ZERO), |s, p| (s.0 + p.0, s.1 + p.1));
+        let sums = middle
+            .iter()
+            .fold((Vec2::ZERO, Vec2::ZERO), |s, p| (s.0 + p.0, s.1 + p.1));
         let frames = [1.0, -1.0].map(|facing| {
             let facing = Vec2::new(facing, 1.0);
             let mut turned = Vec2::ZERO;
@@ -104,7 +106,10 @@ impl Frame {
             }
         });
         let ways = if figure.views.both_ways { 2 } else { 1 };
-        let best = frames.into_iter().take(ways).max_by(|a, b| a.scale.total_cmp(&b.scale));
+        let best = frames
+            .into_iter()
+            .take(ways)
+            .max_by(|a, b| a.scale.total_cmp(&b.scale));
         best.filter(|frame| middle.len() > 1 && frame.scale > 0.0 && frame.scale.is_finite())
     }
 
@@ -131,7 +136,9 @@ pub(super) fn put_on_sides(figure: &Figure, joints: &mut [Option<Vec2>]) -> Vec<
     };
     for pair in pairs(figure) {
         // Limbs that hang on different joints are told apart by those.
-        let Some(ahead) = pair.from.and_then(|from| left_ahead(figure, &pair, from, &frame, joints))
+        let Some(ahead) = pair
+            .from
+            .and_then(|from| left_ahead(figure, &pair, from, &frame, joints))
         else {
             continue;
         };
@@ -161,7 +168,10 @@ fn left_ahead(
 ) -> Option<Ahead> {
     let root = joints[from]?;
     let template_mean = |limb: &[usize]| {
-        let sum: Vec2 = limb.iter().map(|&j| figure.template[j] - figure.template[from]).sum();
+        let sum: Vec2 = limb
+            .iter()
+            .map(|&j| figure.template[j] - figure.template[from])
+            .sum();
         sum / limb.len() as f32
     };
     let (left, right) = (template_mean(&pair.left), template_mean(&pair.right));

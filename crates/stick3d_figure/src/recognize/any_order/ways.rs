@@ -19,7 +19,7 @@ const FOLD_COST: f32 = 5.0;
 const WORTH: f32 = 30.0;
 
 /// A chain of bones, or its beginning, on the ink.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Way {
     /// The marks it passes, the one where it starts included.
     pub(super) marks: Vec<u16>,
@@ -85,7 +85,13 @@ fn keep_likely(ways: &mut Vec<Way>, unit: f32) {
 }
 
 /// A way that goes on to the mark `next` by bones of these template lengths, all in one straight line.
-fn extended(way: &Way, next: usize, lengths: &[f32], places: &[Vec2], lines: &Lines) -> Option<Way> {
+fn extended(
+    way: &Way,
+    next: usize,
+    lengths: &[f32],
+    places: &[Vec2],
+    lines: &Lines,
+) -> Option<Way> {
     let at = usize::from(*way.marks.last()?);
     if way.marks.contains(&(next as u16)) {
         return None;
