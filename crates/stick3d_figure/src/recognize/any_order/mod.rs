@@ -7,8 +7,10 @@
 //! least ink over with bones as long and directed as those of the template.
 
 mod body;
+mod cost;
 mod lines;
 mod marks;
+mod rest;
 mod search;
 mod settle;
 pub(crate) mod sides;
@@ -165,9 +167,6 @@ fn confidence(figure: &Figure, search: &Search, readings: &[Reading], near: f32)
     let margin = rival.map_or(f32::INFINITY, |rival| rival.total_cost - best.total_cost);
     1.0 / (1.0 + (-margin).exp())
 }
-
-#[cfg(test)]
-thread_local!(static EXPANSIONS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) });
 
 #[cfg(test)]
 mod tests;

@@ -93,11 +93,10 @@ fn survey() {
             }
         }
         println!(
-            "{}: {right} of {count}, {:?} each, {:?} {} expansions",
+            "{}: {right} of {count}, {:?} each, {:?}",
             figure.name,
             spent / count as u32,
             started.elapsed(),
-            EXPANSIONS.with(|e| e.replace(0)) / count as usize
         );
     }
 }
