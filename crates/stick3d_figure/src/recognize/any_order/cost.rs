@@ -107,39 +107,15 @@ impl Search<'_> {
     /// Covers the ink of a way. Gives the length of ink that it covers first, and the length of its lines whose only ink
     /// is covered already: ink drawn twice there counts for two lines.
     pub(super) fn ink_of(&self, way: &Way, covered: &mut Samples) -> (f32, f32) {
+        let weights = &self.marks.weights;
         let (mut new, mut shared) = (0.0, 0.0);
-        for pair in way.marks.windows(2) {
-            let Some(line) = self
-                .lines
-                .between(usize::from(pair[0]), usize::from(pair[1]))
-            else {
-                continue;
-            };
-            let bin_length = line.bin_length();
-            // Per bin the length of new ink and of ink that was covered before.
-            let mut bins = [(0.0_f32, 0.0_f32); 64];
-            for touch in &line.touches {
-                let weight = self.marks.weights[usize::from(touch.sample)];
-                let is_new = covered.insert(usize::from(touch.sample));
-                new += if is_new { weight } else { 0.0 };
-                if let Some(bin) = touch.bin.and_then(|bin| bins.get_mut(usize::from(bin))) {
-                    if is_new {
-                        bin.0 += weight;
-                    } else {
-                        bin.1 += weight;
-                    }
-                }
-            }
-            let (mut fresh, mut used, mut needed) = (0.0, 0.0, 0.0);
-            for (bin, free) in bins.iter().zip(&line.free) {
-                if !free {
-                    needed += bin_length;
-                    fresh += bin.0;
-                    used += bin.1;
-                }
-            }
-            let short: f32 = (needed - fresh).max(0.0);
-            shared += (2.0 * short - used).clamp(0.0, short.min(used));
+        for line in self.lines_of(way) {
+            let fresh = line.inner.sum_without(covered, weights);
+            let used = line.drawn - fresh;
+            let short = (line.needed - fresh).max(0.0);
+            shared += (2.0 * short - used).clamp(0.0, short.min(used).max(0.0));
+            new += line.ink.sum_without(covered, weights);
+            covered.add(&line.ink);
         }
         (new, shared)
     }

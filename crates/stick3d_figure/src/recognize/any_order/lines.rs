@@ -30,62 +30,69 @@ const GAP_COST: f32 = 70.0;
 const WORDS: usize = MAX_STROKES * 6 / 64;
 
 /// A set of samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Samples([u64; WORDS]);
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Samples {
+    words: [u64; WORDS],
+    /// So many of the words may be other than zero.
+    used: usize,
+}
 
 impl Samples {
-    pub(super) const NONE: Self = Self([0; WORDS]);
-
-    pub(super) const ALL: Self = Self([u64::MAX; WORDS]);
+    pub(super) const NONE: Self = Self {
+        words: [0; WORDS],
+        used: 0,
+    };
+    pub(super) const ALL: Self = Self {
+        words: [u64::MAX; WORDS],
+        used: WORDS,
+    };
 
     pub(super) fn add(&mut self, other: &Self) {
-        for (word, other) in self.0.iter_mut().zip(&other.0) {
+        for (word, other) in self.words.iter_mut().zip(&other.words[..other.used]) {
             *word |= other;
+        }
+        self.used = self.used.max(other.used);
+    }
+
+    pub(super) fn insert(&mut self, sample: usize) {
+        if let Some(word) = self.words.get_mut(sample / 64) {
+            *word |= 1 << (sample % 64);
+            self.used = self.used.max(sample / 64 + 1);
         }
     }
 
+    /// The sum of what is given for samples that are not in another set.
+    pub(super) fn sum_without(&self, other: &Self, weights: &[f32]) -> f32 {
+        let mut sum = 0.0;
+        for (at, (word, other)) in self.words[..self.used].iter().zip(&other.words).enumerate() {
+            let mut left = word & !other;
+            while left != 0 {
+                let sample = at * 64 + left.trailing_zeros() as usize;
+                sum += weights.get(sample).copied().unwrap_or(0.0);
+                left &= left - 1;
+            }
+        }
+        sum
+    }
+
     pub(super) fn contains(&self, sample: usize) -> bool {
-        self.0
-            .get(sample / 64)
-            .is_some_and(|word| word >> (sample % 64) & 1 == 1)
+        self.words.get(sample / 64).is_some_and(|word| word >> (sample % 64) & 1 == 1)
     }
-
-    /// Adds a sample and says whether it is new.
-    pub(super) fn insert(&mut self, sample: usize) -> bool {
-        let Some(word) = self.0.get_mut(sample / 64) else {
-            return false;
-        };
-        let bit = 1 << (sample % 64);
-        let new = *word & bit == 0;
-        *word |= bit;
-        new
-    }
-}
-
-/// A sample that belongs to a line.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Touch {
-    pub(super) sample: u16,
-    /// Where along the line; none where the ink only passes by one of its ends.
-    pub(super) bin: Option<u8>,
 }
 
 /// A straight line between two marks that ink speaks for.
 #[derive(Clone, Debug)]
 pub(super) struct Line {
-    pub(super) length: f32,
     /// How unlikely it is that this ink was meant as one straight line.
     pub(super) cost: f32,
-    pub(super) touches: Vec<Touch>,
-    /// Per bin: nothing needs to be drawn there.
-    pub(super) free: Vec<bool>,
-}
-
-impl Line {
-    /// The length of a bin.
-    pub(super) fn bin_length(&self) -> f32 {
-        self.length / self.free.len() as f32
-    }
+    /// All ink that the line explains, what passes by its ends included.
+    pub(super) ink: Samples,
+    /// The ink along the line where something must be drawn, away from its ends.
+    pub(super) inner: Samples,
+    /// The length of that ink,
+    pub(super) drawn: f32,
+    /// and of that part of the line.
+    pub(super) needed: f32,
 }
 
 /// All lines between marks. The mark after the last place is the middle of the head's loop.
@@ -135,61 +142,53 @@ fn line(ink: &Ink, marks: &Marks, [from, to]: [Vec2; 2], head: Option<&Head>) ->
     let near_end = SAME_PLACE * unit;
     let bins = (length / (BIN * unit)).ceil().clamp(3.0, MAX_BINS);
     let bin_of = |along: f32| (along / length * bins).clamp(0.0, bins - 1.0) as usize;
-    let mut touches = Vec::new();
-    let mut drawn = vec![false; bins as usize];
+    let is_free = |bin: usize| {
+        let along = (bin as f32 + 0.5) / bins * length;
+        along < near_end || along > length - near_end.max(1.1 * inside)
+    };
+    let mut found = Line {
+        cost: 0.0,
+        ink: Samples::NONE,
+        inner: Samples::NONE,
+        drawn: 0.0,
+        needed: 0.0,
+    };
+    let mut reached = vec![false; bins as usize];
     let (mut squares, mut weight) = (0.0, 0.0);
     for (sample, &p) in ink.samples.iter().enumerate() {
         if head.is_some_and(|head| head.samples.contains(&sample)) {
-            touches.push(Touch {
-                sample: sample as u16,
-                bin: None,
-            });
+            found.ink.insert(sample);
             continue;
         }
         let (along, beside) = (direction.dot(p - from), direction.perp_dot(p - from));
         if beside.abs() > width.max(near_end) || along < -near_end || along > length + near_end {
             continue;
         }
-        let is_inner = (0.0..=length).contains(&along);
-        let aligned = marks.tangents[sample].dot(direction).abs() >= MIN_ALIGNMENT;
-        if is_inner && aligned && beside.abs() <= width {
-            touches.push(Touch {
-                sample: sample as u16,
-                bin: Some(bin_of(along) as u8),
-            });
-            let reach = 0.75 * marks.weights[sample];
-            drawn[bin_of(along - reach)..=bin_of(along + reach)].fill(true);
-            squares += marks.weights[sample] * beside * beside;
-            weight += marks.weights[sample];
+        let here = marks.weights[sample];
+        let is_inner = (0.0..=length).contains(&along) && beside.abs() <= width;
+        if is_inner && marks.tangents[sample].dot(direction).abs() >= MIN_ALIGNMENT {
+            found.ink.insert(sample);
+            if !is_free(bin_of(along)) {
+                found.inner.insert(sample);
+                found.drawn += here;
+            }
+            reached[bin_of(along - 0.75 * here)..=bin_of(along + 0.75 * here)].fill(true);
+            squares += here * beside * beside;
+            weight += here;
         } else if p.distance(from).min(p.distance(to)) <= near_end {
-            touches.push(Touch {
-                sample: sample as u16,
-                bin: None,
-            });
+            found.ink.insert(sample);
         }
     }
-    let free: Vec<bool> = (0..drawn.len())
-        .map(|bin| {
-            let along = (bin as f32 + 0.5) / bins * length;
-            along < near_end || along > length - near_end.max(1.1 * inside)
-        })
-        .collect();
-    let gap = drawn
-        .iter()
-        .zip(&free)
-        .filter(|(drawn, free)| !**drawn && !**free)
-        .count();
-    let gap = gap as f32 / bins * length;
+    let needed = (0..reached.len()).filter(|&bin| !is_free(bin));
+    let undrawn = needed.clone().filter(|&bin| !reached[bin]).count();
+    found.needed = needed.count() as f32 / bins * length;
+    let gap = undrawn as f32 / bins * length;
     if gap > MAX_GAP * length || (weight <= 0.0 && head.is_none()) {
         return None;
     }
     let sigma = STRAIGHTNESS * unit + BOW * length;
     let independent = 1.0 + length / (CORRELATION * unit);
     let bend = 0.5 * independent * squares / weight.max(f32::MIN_POSITIVE) / (sigma * sigma);
-    Some(Line {
-        length,
-        cost: bend + GAP_COST * gap / unit,
-        touches,
-        free,
-    })
+    found.cost = bend + GAP_COST * gap / unit;
+    Some(found)
 }

@@ -107,11 +107,7 @@ impl Search<'_> {
         for chain in rest {
             reached.add(&chain.reach);
         }
-        let weights = self.marks.weights.iter().enumerate();
-        let out_of_reach: f32 = weights
-            .filter(|(sample, _)| !reached.contains(*sample))
-            .map(|(_, weight)| weight)
-            .sum();
+        let out_of_reach = self.all.sum_without(&reached, &self.marks.weights);
         let alone = reading.total_cost + gain;
         alone.max(reading.cost + cost + LEFTOVER_COST * out_of_reach / unit)
     }

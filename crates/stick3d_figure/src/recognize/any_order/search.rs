@@ -9,7 +9,7 @@ use std::rc::Rc;
 use glam::Vec2;
 
 use super::body::Body;
-use super::lines::{Lines, Samples};
+use super::lines::{Line, Lines, Samples};
 use super::marks::Marks;
 use super::rest::Rest;
 use super::ways::{Way, ways};
@@ -103,6 +103,8 @@ pub(super) struct Search<'a> {
     pub(super) body: &'a Body,
     pub(super) ink: &'a Ink,
     pub(super) marks: &'a Marks,
+    /// All of the ink.
+    pub(super) all: Samples,
     pub(super) lines: Lines,
     pub(super) places: Vec<Vec2>,
     /// The mark in the middle of the head's loop.
@@ -115,12 +117,15 @@ pub(super) struct Search<'a> {
 
 impl<'a> Search<'a> {
     pub(super) fn new(body: &'a Body, ink: &'a Ink, marks: &'a Marks) -> Self {
+        let mut all = Samples::NONE;
+        (0..ink.samples.len()).for_each(|sample| all.insert(sample));
         let mut places = marks.places.clone();
         places.extend(marks.head.iter().map(|head| head.center));
         Self {
             body,
             ink,
             marks,
+            all,
             lines: Lines::new(ink, marks),
             rough: vec![OnceCell::new(); body.chains.len() * places.len()],
             ways: vec![OnceCell::new(); body.chains.len() * places.len()],
@@ -314,17 +319,15 @@ impl<'a> Search<'a> {
 
     /// The ink of a way and the lengths it stands for.
     pub(super) fn points_of(&self, way: &Way) -> Vec<(Vec2, f32)> {
-        let lines = way.marks.windows(2).filter_map(|pair| {
-            self.lines
-                .between(usize::from(pair[0]), usize::from(pair[1]))
-        });
-        let touches = lines
-            .flat_map(|line| &line.touches)
-            .filter(|touch| touch.bin.is_some());
-        touches
-            .map(|touch| usize::from(touch.sample))
-            .map(|sample| (self.ink.samples[sample], self.marks.weights[sample]))
-            .collect()
+        let ink = |sample: &usize| self.lines_of(way).any(|line| line.ink.contains(*sample));
+        let samples = (0..self.ink.samples.len()).filter(ink);
+        samples.map(|sample| (self.ink.samples[sample], self.marks.weights[sample])).collect()
+    }
+
+    /// The lines of a way.
+    pub(super) fn lines_of(&self, way: &Way) -> impl Iterator<Item = &Line> {
+        let pairs = way.marks.windows(2);
+        pairs.filter_map(|pair| self.lines.between(usize::from(pair[0]), usize::from(pair[1])))
     }
 
     /// Where a reading puts the joints of the figure.
