@@ -76,7 +76,9 @@ impl Samples {
     }
 
     pub(super) fn contains(&self, sample: usize) -> bool {
-        self.words.get(sample / 64).is_some_and(|word| word >> (sample % 64) & 1 == 1)
+        self.words
+            .get(sample / 64)
+            .is_some_and(|word| word >> (sample % 64) & 1 == 1)
     }
 }
 

@@ -39,7 +39,7 @@ pub struct AnyOrder {
     /// The limbs of which something is not drawn: the joints without a place, from the trunk outwards.
     pub missing: Vec<Vec<usize>>,
     /// Pairs of limbs that lie too close together to tell left from right: the left and the right joint nearest to the
-    /// trunk. [`swap_pair`](crate::edit::swap_pair) exchanges them.
+    /// trunk. [`AnyOrder::swap_pair`] exchanges them, and [`swap_pair`](crate::edit::swap_pair) in a sketch.
     pub ambiguous: Vec<[usize; 2]>,
     /// Negative logarithm of the reading's likelihood, without unit: 10 is a neat whole drawing, 40 hardly one.
     pub cost: f32,
@@ -53,6 +53,21 @@ impl AnyOrder {
     /// Whether every joint has its place.
     pub fn is_complete(&self) -> bool {
         self.joints.iter().all(Option::is_some)
+    }
+
+    /// Exchanges the limb of a joint with the one of the other side. Says whether the joint belongs to a pair.
+    pub fn swap_pair(&mut self, figure: &Figure, joint: usize) -> bool {
+        let Some(pair) = sides::pair_of(figure, joint) else {
+            return false;
+        };
+        sides::swap(&pair, &mut self.joints);
+        let exchanged = |joint: &mut usize| {
+            if pair.left.contains(joint) || pair.right.contains(joint) {
+                *joint = figure.mirror_of(*joint);
+            }
+        };
+        self.missing.iter_mut().flatten().for_each(exchanged);
+        true
     }
 
     /// The sketch, when every joint has its place.
@@ -112,7 +127,7 @@ pub fn recognize_any(figure: &Figure, strokes: &[Stroke]) -> Result<AnyOrder, Re
     Ok(AnyOrder {
         missing: missing(&body, &joints),
         ambiguous: ambiguous.collect(),
-        cost: best.map_or(f32::INFINITY, |best| best.total_cost),
+        cost: best.map_or_else(|| search.cost_of_nothing(), |best| best.total_cost),
         confidence: confidence(figure, &search, &readings, SAME_READING * ink.diagonal),
         leftover: best.map_or(1.0, |best| (best.leftover / total).clamp(0.0, 1.0)),
         joints,

@@ -9,6 +9,7 @@ use std::rc::Rc;
 use glam::Vec2;
 
 use super::body::Body;
+use super::cost::LEFTOVER_COST;
 use super::lines::{Line, Lines, Samples};
 use super::marks::Marks;
 use super::rest::Rest;
@@ -312,6 +313,11 @@ impl<'a> Search<'a> {
         way.marks.last().map(|mark| usize::from(*mark))
     }
 
+    /// What it costs to explain none of the ink.
+    pub(super) fn cost_of_nothing(&self) -> f32 {
+        LEFTOVER_COST * self.marks.weights.iter().sum::<f32>() / self.unit()
+    }
+
     /// The length that tolerances are parts of.
     pub(super) fn unit(&self) -> f32 {
         self.ink.tolerance_length
@@ -321,13 +327,18 @@ impl<'a> Search<'a> {
     pub(super) fn points_of(&self, way: &Way) -> Vec<(Vec2, f32)> {
         let ink = |sample: &usize| self.lines_of(way).any(|line| line.ink.contains(*sample));
         let samples = (0..self.ink.samples.len()).filter(ink);
-        samples.map(|sample| (self.ink.samples[sample], self.marks.weights[sample])).collect()
+        samples
+            .map(|sample| (self.ink.samples[sample], self.marks.weights[sample]))
+            .collect()
     }
 
     /// The lines of a way.
     pub(super) fn lines_of(&self, way: &Way) -> impl Iterator<Item = &Line> {
         let pairs = way.marks.windows(2);
-        pairs.filter_map(|pair| self.lines.between(usize::from(pair[0]), usize::from(pair[1])))
+        pairs.filter_map(|pair| {
+            self.lines
+                .between(usize::from(pair[0]), usize::from(pair[1]))
+        })
     }
 
     /// Where a reading puts the joints of the figure.

@@ -39,6 +39,12 @@ pub(crate) fn pairs(figure: &Figure) -> Vec<Pair> {
     pairs
 }
 
+/// The pair to which a joint belongs.
+pub(crate) fn pair_of(figure: &Figure, joint: usize) -> Option<Pair> {
+    let mut pairs = pairs(figure).into_iter();
+    pairs.find(|pair| pair.left.contains(&joint) || pair.right.contains(&joint))
+}
+
 /// The joints of one side that are joined with `joint`, from the trunk outwards, and the joint on which they hang.
 fn limb(figure: &Figure, joint: usize) -> (Vec<usize>, Option<usize>) {
     let side = figure.joints[joint].side;
