@@ -1,8 +1,11 @@
 //! What is still to come: bounds for the search, of what the chains that a reading has not placed can do for it.
 
+use std::rc::Rc;
+
 use super::cost::{LEFTOVER_COST, MISSING_COST};
 use super::lines::Samples;
 use super::search::{Reading, Search};
+use super::ways::Way;
 
 /// What a chain can do for a reading at best, as if no other chain were there.
 #[derive(Clone, Debug)]
@@ -15,7 +18,12 @@ pub(super) struct Rest {
     cost: f32,
     /// The ink that it may explain.
     reach: Samples,
+    /// Its ways that are better than to be missing, the best first; none before they are known.
+    pub(super) ways: Option<Vec<Rc<Way>>>,
 }
+
+/// So many of them are tried.
+const MAX_WAYS: usize = 24;
 
 impl Rest {
     const MISSING: Self = Self {
@@ -23,12 +31,14 @@ impl Rest {
         second_gain: MISSING_COST,
         cost: MISSING_COST,
         reach: Samples::NONE,
+        ways: None,
     };
     const ANYTHING: Self = Self {
         gain: f32::NEG_INFINITY,
         second_gain: f32::NEG_INFINITY,
         cost: 0.0,
         reach: Samples::ALL,
+        ways: None,
     };
 
     fn consider(&mut self, gain: f32, cost: f32) {
@@ -46,14 +56,21 @@ impl Search<'_> {
     pub(super) fn rest(&self, trunk: &Reading) -> Vec<Rest> {
         let best_of = |index: usize, mark: usize| {
             let mut rest = Rest::MISSING;
+            let mut ways: Vec<(f32, &Rc<Way>)> = Vec::new();
             for way in self.ways_from(index, mark) {
                 let step = self.step(index, trunk, Some(way), 1.0, None);
                 let gain = step.total_cost - trunk.total_cost;
                 rest.consider(gain, step.cost - trunk.cost);
                 if gain < MISSING_COST {
-                    self.ink_of(way, &mut rest.reach);
+                    ways.push((gain, way));
                 }
             }
+            ways.sort_by(|a, b| a.0.total_cmp(&b.0));
+            ways.truncate(MAX_WAYS);
+            for (_, way) in &ways {
+                self.ink_of(way, &mut rest.reach);
+            }
+            rest.ways = Some(ways.into_iter().map(|(_, way)| way.clone()).collect());
             rest
         };
         self.rest_of(trunk, best_of)

@@ -17,12 +17,12 @@ use super::ways::{Way, ways};
 use crate::recognize::ink::Ink;
 
 /// Readings that are made longer before the search is given up; it bounds the work.
-const MAX_EXPANSIONS: usize = 1000;
+const MAX_EXPANSIONS: usize = 400;
 /// When it is given up, so many of the likeliest are completed, each in so many ways.
 const MAX_COMPLETED: usize = 6;
 const BEAM: usize = 6;
 /// The search ends when all other readings are this much less likely than the best one.
-const SETTLED: f32 = 3.0;
+const SETTLED: f32 = 2.0;
 
 /// A reading of the first chains.
 #[derive(Clone, Debug)]
@@ -189,7 +189,9 @@ impl<'a> Search<'a> {
             .iter()
             .map(|chain| chain.gain)
             .sum();
-        self.steps(next.chains, &next.reading)
+        let all = || self.ways_of(next.chains, &next.reading);
+        let ways = next.rest[next.chains].ways.as_deref().unwrap_or_else(all);
+        self.steps(next.chains, &next.reading, ways)
             .into_iter()
             .map(move |step| Open {
                 least_cost: next.least_cost.max(step.total_cost + gain),
@@ -217,7 +219,7 @@ impl<'a> Search<'a> {
         };
         let mut trunks = Vec::new();
         for start in (0..self.marks.places.len()).map(blank) {
-            for step in self.steps(0, &start) {
+            for step in self.steps(0, &start, self.ways_from(0, start.start)) {
                 let trunk = self.grown(&start, &step);
                 trunks.push(Open {
                     least_cost: self.least_cost(&trunk, &self.rough_rest(&trunk)),
@@ -243,11 +245,8 @@ impl<'a> Search<'a> {
             for index in next.chains..self.body.chains.len() {
                 let mut longer: Vec<(usize, Step)> = Vec::new();
                 for (from, reading) in readings.iter().enumerate() {
-                    longer.extend(
-                        self.steps(index, reading)
-                            .into_iter()
-                            .map(|step| (from, step)),
-                    );
+                    let steps = self.steps(index, reading, self.ways_of(index, reading));
+                    longer.extend(steps.into_iter().map(|step| (from, step)));
                 }
                 longer.sort_by(|a, b| a.1.total_cost.total_cmp(&b.1.total_cost));
                 let longer = longer.iter().take(BEAM);
@@ -260,24 +259,20 @@ impl<'a> Search<'a> {
         found
     }
 
-    /// All that one more chain can do: be missing, or lie on a way. The first chain is never missing.
-    fn steps(&self, index: usize, reading: &Reading) -> Vec<Step> {
+    /// All that one more chain can do: be missing, or lie on one of these ways. The first chain is never missing.
+    fn steps(&self, index: usize, reading: &Reading, ways: &[Rc<Way>]) -> Vec<Step> {
         let chain = &self.body.chains[index];
         let mut steps = Vec::new();
         if index > 0 {
             steps.push(self.step(index, reading, None, 1.0, None));
         }
-        // Twins are told apart later, so one order of the two is enough.
+        // Twins are told apart later, so one order of the two is enough, and a single one is the first.
         let twin = chain.twin.map(|twin| reading.ways[twin].as_deref());
-        let twin_is_missing = matches!(twin, Some(None));
-        let Some(mark) = self
-            .mark_of(reading, chain.from)
-            .filter(|_| !twin_is_missing)
-        else {
+        if matches!(twin, Some(None)) {
             return steps;
-        };
+        }
         let twin = twin.flatten();
-        for way in self.ways_from(index, mark) {
+        for way in ways {
             if twin.is_some_and(|twin| twin.marks > way.marks) {
                 continue;
             }
@@ -287,6 +282,12 @@ impl<'a> Search<'a> {
             }
         }
         steps
+    }
+
+    /// The ways of a chain from where a reading has the joint on which it hangs.
+    fn ways_of(&self, chain: usize, reading: &Reading) -> &[Rc<Way>] {
+        let mark = self.mark_of(reading, self.body.chains[chain].from);
+        mark.map_or(&[], |mark| self.ways_from(chain, mark))
     }
 
     /// The ways of a chain from a mark.
