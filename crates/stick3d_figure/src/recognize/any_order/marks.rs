@@ -7,7 +7,7 @@ use glam::Vec2;
 use crate::recognize::ink::Ink;
 
 /// More marks than any drawing of a figure needs; it bounds the work.
-const MAX_MARKS: usize = 56;
+const MAX_MARKS: usize = 40;
 /// Ends and corners within this part of the tolerance length are meant as one place.
 pub(super) const SAME_PLACE: f32 = 0.03;
 /// What a corner costs when a stroke is cut into straight pieces.

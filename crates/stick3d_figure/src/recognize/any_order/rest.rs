@@ -23,7 +23,7 @@ pub(super) struct Rest {
 }
 
 /// So many of them are tried.
-const MAX_WAYS: usize = 24;
+const MAX_WAYS: usize = 64;
 
 impl Rest {
     const MISSING: Self = Self {

@@ -16,8 +16,8 @@ use super::rest::Rest;
 use super::ways::{Way, ways};
 use crate::recognize::ink::Ink;
 
-/// Readings that are made longer before the search is given up; it bounds the work.
-const MAX_EXPANSIONS: usize = 400;
+/// Readings that are looked at closely or made longer before the search is given up; it bounds the work.
+const MAX_EXPANSIONS: usize = 600;
 /// When it is given up, so many of the likeliest are completed, each in so many ways.
 const MAX_COMPLETED: usize = 6;
 const BEAM: usize = 6;
@@ -152,6 +152,7 @@ impl<'a> Search<'a> {
                     open.push(self.close(self.grown(&next.reading, &step).into(), next.rest));
                 }
                 Bound::Trunk => {
+                    expansions += 1;
                     let rest = self.rest(&next.reading).into();
                     open.push(self.close(next.reading, rest));
                 }

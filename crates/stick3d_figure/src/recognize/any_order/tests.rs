@@ -284,7 +284,7 @@ fn a_loop_alone_is_a_head() {
             < 5.0
     );
     assert_eq!(found.joints.iter().flatten().count(), 1);
-    assert_eq!((found.leftover, found.is_complete()), (0.0, false));
+    assert!(!found.is_complete() && found.missing.len() == 6);
 }
 
 #[test]
@@ -467,14 +467,14 @@ fn the_work_is_bounded_whatever_is_drawn() {
                 figure.name,
                 strokes.len()
             );
-            assert!(spent.as_secs() < 5, "{spent:?}");
+            assert!(spent.as_secs_f32() < 2.0, "{spent:?}");
             assert!(found.cost.is_finite() && found.leftover <= 1.0);
         }
     }
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
     fn nothing_makes_it_panic(

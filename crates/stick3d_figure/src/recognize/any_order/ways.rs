@@ -8,7 +8,7 @@ use super::lines::Lines;
 /// Ways kept per number of bones; it bounds the work for figures with long chains.
 const MAX_WAYS: usize = 160;
 /// Lines that are less likely are no bones.
-const MAX_LINE_COST: f32 = 30.0;
+const MAX_LINE_COST: f32 = 12.0;
 /// What a joint costs at which nothing bends,
 const STRAIGHT_COST: f32 = 1.5;
 /// and the angle, radians, at which that is over.
