@@ -145,13 +145,11 @@ fn head_alone(body: &Body, marks: &Marks) -> Vec<Option<Vec2>> {
 }
 
 fn missing(body: &Body, joints: &[Option<Vec2>]) -> Vec<Vec<usize>> {
-    let undrawn = body.chains.iter().map(|chain| {
-        let joints = chain
-            .joints
-            .iter()
-            .copied()
-            .filter(|&joint| joints[joint].is_none());
-        joints.collect::<Vec<usize>>()
+    let undrawn = body.chains.iter().enumerate().map(|(index, chain)| {
+        // The joint at which the search starts is on no chain, but before the first one.
+        let start = (index == 0).then_some(body.start);
+        let all = start.into_iter().chain(chain.joints.iter().copied());
+        all.filter(|&joint| joints[joint].is_none()).collect::<Vec<usize>>()
     });
     undrawn.filter(|chain| !chain.is_empty()).collect()
 }
