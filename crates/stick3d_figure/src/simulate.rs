@@ -292,12 +292,7 @@ pub(crate) fn draw(
 }
 
 /// A stroke from corner to corner by an unsteady hand.
-pub(crate) fn line(
-    rng: &mut ChaCha8Rng,
-    corners: &[Vec2],
-    hand: Hand,
-    time_s: &mut f64,
-) -> Stroke {
+pub(crate) fn line(rng: &mut ChaCha8Rng, corners: &[Vec2], hand: Hand, time_s: &mut f64) -> Stroke {
     let mut stroke = Stroke::default();
     for pair in corners.windows(2) {
         let length = pair[0].distance(pair[1]);

@@ -149,7 +149,8 @@ fn missing(body: &Body, joints: &[Option<Vec2>]) -> Vec<Vec<usize>> {
         // The joint at which the search starts is on no chain, but before the first one.
         let start = (index == 0).then_some(body.start);
         let all = start.into_iter().chain(chain.joints.iter().copied());
-        all.filter(|&joint| joints[joint].is_none()).collect::<Vec<usize>>()
+        all.filter(|&joint| joints[joint].is_none())
+            .collect::<Vec<usize>>()
     });
     undrawn.filter(|chain| !chain.is_empty()).collect()
 }

@@ -7,7 +7,7 @@ use super::body::Chain;
 use super::search::{Reading, Search};
 
 /// Logarithm by which the two bones of a limb differ from the template's ratio.
-const RATIO_SPREAD: f32 = 0.22;
+const RATIO_SPREAD: f32 = 0.25;
 /// How far from straight a bone is drawn, in parts of the tolerance length,
 const STRAIGHTNESS: f32 = 0.006;
 /// and in parts of the limb's length.
