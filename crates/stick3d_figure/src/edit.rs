@@ -4,6 +4,7 @@ use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
 use crate::figure::Figure;
+use crate::recognize::any_order::sides;
 use crate::sketch::{Sketch, SketchError};
 
 /// The joint nearest to `at` among those not farther than `radius`; of joints at one place the last.
@@ -74,6 +75,21 @@ pub fn mirrored_in_place(figure: &Figure, sketch: &Sketch) -> Sketch {
         }
     }
     moved
+}
+
+/// Exchanges the limb to which a joint belongs with the one of the other side: which leg is the right one cannot be
+/// seen in every drawing. Says whether the joint belongs to a pair; the sketch is otherwise unchanged.
+pub fn swap_pair(figure: &Figure, sketch: &mut Sketch, joint: usize) -> bool {
+    let Some(pair) = sides::pair_of(figure, joint) else {
+        return false;
+    };
+    let mut points = sketch.points().to_vec();
+    sides::swap(&pair, &mut points);
+    match Sketch::new(figure, points) {
+        Ok(swapped) => *sketch = swapped,
+        Err(_) => return false,
+    }
+    true
 }
 
 /// Past and undone states of something that is edited.

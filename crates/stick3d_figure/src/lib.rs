@@ -8,7 +8,7 @@
 //! - [`Stroke`]s are what a pen did, in canvas pixels with times. Screens have y down, everything here has y up:
 //!   [`stroke::flip_y`] is for the edge where pointer positions come in.
 //! - [`recognize()`] turns strokes that follow the path into a [`Sketch`]; [`progress()`] says, while they are drawn, how
-//!   far they are; [`complete_from_template`] guesses the rest; [`is_scribble`] tells a wish to undo from a limb.
+//!   far they are; [`recognize_any`] reads strokes in any order, direction and pieces; [`complete_from_template`] guesses the rest; [`is_scribble`] tells a wish to undo from a limb.
 //! - A [`Sketch`] is one point per joint. [`Sketch::input_vector`] is what the networks read. [`edit`] drags, mirrors
 //!   and undoes, [`interchange`] reads and writes the JSON files.
 //! - [`TriangleMesh`] and its checks, [`NormalAdjacency`] for normals at frame rate, [`JointRegressor`] from a mesh
@@ -62,6 +62,7 @@ pub use figure::{Anchor, Figure, FigureError, Joint, Side};
 pub use interchange::{Drawing, InterchangeError};
 pub use mesh::{MeshError, NormalAdjacency, TriangleMesh};
 pub use preview::complete_from_template;
+pub use recognize::any_order::{AnyOrder, recognize_any};
 pub use recognize::{Pen, Progress, RecognizeError, progress, recognize};
 pub use regressor::{JointRegressor, RegressorError};
 pub use scribble::is_scribble;

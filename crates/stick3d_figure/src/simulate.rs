@@ -1,5 +1,7 @@
 //! A person who draws the shipped figures, for tests: plausible poses, styles of drawing, an unsteady hand.
 
+pub(crate) mod any_order;
+
 use glam::{Quat, Vec2, Vec3};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -277,34 +279,41 @@ pub(crate) fn draw(
 ) -> Vec<Stroke> {
     let path = &figure.path;
     let mut time_s = 0.0;
-    let wobble = |rng: &mut ChaCha8Rng, size: f32| {
-        Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * size
-    };
     let mut own = ChaCha8Rng::from_rng(rng);
     cuts.iter()
         .map(|&(from, to)| {
             let corners: Vec<Vec2> = (from..=to)
                 .map(|k| joints_px[path[k]] + wobble(&mut own, hand.aim_px))
                 .collect();
-            let mut stroke = Stroke::default();
             time_s += 0.3;
-            for pair in corners.windows(2) {
-                let length = pair[0].distance(pair[1]);
-                let steps = (length / hand.spacing_px).ceil().max(1.0);
-                // A slight bow, since nobody draws a straight line.
-                let bow = (pair[1] - pair[0]).perp() * own.random_range(-hand.bow..=hand.bow);
-                for i in 0..=steps as usize {
-                    let t = i as f32 / steps;
-                    let p = pair[0].lerp(pair[1], t) + bow * (4.0 * t * (1.0 - t));
-                    stroke
-                        .push(p + wobble(&mut own, hand.jitter_px), time_s)
-                        .unwrap();
-                    time_s += f64::from(length / steps / hand.speed_px_per_s);
-                }
-            }
-            stroke
+            line(&mut own, &corners, hand, &mut time_s)
         })
         .collect()
+}
+
+/// A stroke from corner to corner by an unsteady hand.
+pub(crate) fn line(rng: &mut ChaCha8Rng, corners: &[Vec2], hand: Hand, time_s: &mut f64) -> Stroke {
+    let mut stroke = Stroke::default();
+    for pair in corners.windows(2) {
+        let length = pair[0].distance(pair[1]);
+        let steps = (length / hand.spacing_px).ceil().max(1.0);
+        // A slight bow, since nobody draws a straight line.
+        let bow = (pair[1] - pair[0]).perp() * rng.random_range(-hand.bow..=hand.bow);
+        for i in 0..=steps as usize {
+            let t = i as f32 / steps;
+            let p = pair[0].lerp(pair[1], t) + bow * (4.0 * t * (1.0 - t));
+            stroke
+                .push(p + wobble(rng, hand.jitter_px), *time_s)
+                .unwrap();
+            *time_s += f64::from(length / steps / hand.speed_px_per_s);
+        }
+    }
+    stroke
+}
+
+/// Anywhere in a square round zero.
+pub(crate) fn wobble(rng: &mut ChaCha8Rng, size: f32) -> Vec2 {
+    Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * size
 }
 
 /// A pose in canvas pixels.

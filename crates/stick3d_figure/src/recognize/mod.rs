@@ -4,6 +4,7 @@
 //! path retraces (elbow back to neck) may be drawn or skipped. Corners are not looked for one by one: all path points
 //! are placed together, at the samples where straight pieces between them explain the ink best.
 
+pub mod any_order;
 mod cost;
 mod ink;
 mod plan;

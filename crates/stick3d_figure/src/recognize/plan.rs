@@ -82,7 +82,7 @@ impl Plan {
 }
 
 /// The longest way between two joints of the tree.
-fn reach(figure: &Figure) -> f32 {
+pub(super) fn reach(figure: &Figure) -> f32 {
     let farthest = |from: usize| {
         let mut way = vec![f32::NAN; figure.joint_count()];
         way[from] = 0.0;

@@ -1,0 +1,92 @@
+//! Elbows and knees put where the ink and the template agree best. A limb that is hardly bent has no corner that could
+//! be found before it is known to be a limb.
+
+use glam::Vec2;
+
+use super::body::Chain;
+use super::search::{Reading, Search};
+
+/// Logarithm by which the two bones of a limb differ from the template's ratio.
+const RATIO_SPREAD: f32 = 0.25;
+/// How far from straight a bone is drawn, in parts of the tolerance length,
+const STRAIGHTNESS: f32 = 0.006;
+/// and in parts of the limb's length.
+const BOW: f32 = 0.012;
+/// Deviations along a line are alike over about this part of the tolerance length.
+const CORRELATION: f32 = 0.08;
+/// How often all joints of a limb are settled, each between its neighbours.
+const ROUNDS: usize = 2;
+
+/// Where a reading puts the joints of the figure, those in the middle of limbs settled on the ink.
+pub(super) fn settled(search: &Search, reading: &Reading) -> Vec<Option<Vec2>> {
+    let mut joints = search.joints(reading);
+    for (chain, way) in search.body.chains.iter().zip(&reading.ways) {
+        let Some(way) = way else { continue };
+        let ink = search.points_of(way);
+        let row: Vec<usize> = std::iter::once(chain.from)
+            .chain(chain.joints.iter().copied())
+            .collect();
+        for _ in 0..ROUNDS {
+            for (middle, three) in row.windows(3).enumerate() {
+                if let (Some(before), Some(at), Some(after)) =
+                    (joints[three[0]], joints[three[1]], joints[three[2]])
+                {
+                    joints[three[1]] = Some(settle(
+                        chain,
+                        middle,
+                        [before, at, after],
+                        &ink,
+                        search.unit(),
+                    ));
+                }
+            }
+        }
+    }
+    joints
+}
+
+/// The best place of the joint after bone `middle`, of those on the ink and the one where it is.
+fn settle(
+    chain: &Chain,
+    middle: usize,
+    [before, at, after]: [Vec2; 3],
+    ink: &[(Vec2, f32)],
+    unit: f32,
+) -> Vec2 {
+    let ratio = chain.lengths[middle] / chain.lengths[middle + 1];
+    let length = before.distance(at) + at.distance(after);
+    // In a longer chain the ink of other bones is none of this joint's business.
+    let near: Vec<(Vec2, f32)> = ink
+        .iter()
+        .copied()
+        .filter(|(p, _)| from_line(*p, before, at).min(from_line(*p, at, after)) < 0.1 * length)
+        .collect();
+    let weight: f32 = near.iter().map(|(_, weight)| weight).sum();
+    let sigma = STRAIGHTNESS * unit + BOW * length;
+    let independent = length / (CORRELATION * unit);
+    let cost = |place: Vec2| {
+        let squares: f32 = near
+            .iter()
+            .map(|(p, weight)| {
+                weight
+                    * from_line(*p, before, place)
+                        .min(from_line(*p, place, after))
+                        .powi(2)
+            })
+            .sum();
+        let bend = 0.5 * independent * squares / weight.max(f32::MIN_POSITIVE) / (sigma * sigma);
+        let drawn = before.distance(place) / place.distance(after).max(f32::MIN_POSITIVE);
+        bend + 0.5 * ((drawn / ratio).max(1.0e-3).ln() / RATIO_SPREAD).powi(2)
+    };
+    let places = near.iter().map(|(place, _)| *place).chain([at]);
+    places
+        .map(|place| (cost(place), place))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map_or(at, |(_, place)| place)
+}
+
+fn from_line(p: Vec2, a: Vec2, b: Vec2) -> f32 {
+    let line = b - a;
+    let along = (p - a).dot(line) / line.length_squared().max(f32::MIN_POSITIVE);
+    p.distance(a + line * along.clamp(0.0, 1.0))
+}

@@ -1,0 +1,220 @@
+//! A person who draws in any order: strokes cut, turned round and shuffled at will, a head as a loop, limbs left out.
+
+use glam::Vec2;
+use rand::Rng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+
+use super::{Hand, line, wobble};
+use crate::figure::{Figure, Side};
+use crate::stroke::Stroke;
+
+/// How the strokes are made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Habits {
+    /// How often the pen goes on into the next bone.
+    pub(crate) go_on: f64,
+    /// How often a bone is cut into two strokes.
+    pub(crate) cut: f64,
+    /// How often the head is a loop.
+    pub(crate) loop_head: f64,
+    /// How large its radius is, in parts of the bone to it.
+    pub(crate) loop_radius: (f32, f32),
+}
+
+impl Default for Habits {
+    fn default() -> Self {
+        Self {
+            go_on: 0.6,
+            cut: 0.12,
+            loop_head: 0.35,
+            loop_radius: (0.45, 0.8),
+        }
+    }
+}
+
+/// How far bones of a flat pose turn from the template, degrees either way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Freedom {
+    pub(crate) roll: f32,
+    pub(crate) center: f32,
+    pub(crate) first: f32,
+    pub(crate) later: f32,
+}
+
+/// Freely moving, arms raised and crossing.
+pub(crate) const HUMAN_FREEDOM: Freedom = Freedom {
+    roll: 35.0,
+    center: 30.0,
+    first: 110.0,
+    later: 100.0,
+};
+/// Walking, grazing, rearing.
+pub(crate) const HORSE_FREEDOM: Freedom = Freedom {
+    roll: 25.0,
+    center: 35.0,
+    first: 28.0,
+    later: 30.0,
+};
+
+/// The template with its bones turned in the plane and lengthened or shortened by up to 15 %, metres. A bone's angle is
+/// relative to the bone it hangs on.
+pub(crate) fn flat_pose(figure: &Figure, rng: &mut ChaCha8Rng, freedom: Freedom) -> Vec<Vec2> {
+    let facing = Vec2::new(
+        if figure.views.both_ways && rng.random::<bool>() {
+            -1.0
+        } else {
+            1.0
+        },
+        1.0,
+    );
+    let mut placed: Vec<Option<(Vec2, f32)>> = vec![None; figure.joint_count()];
+    let roll = rng.random_range(-freedom.roll..freedom.roll);
+    placed[figure.root] = Some((Vec2::ZERO, roll));
+    for _ in &figure.bones {
+        for &[a, b] in &figure.bones {
+            let (from, to) = match (placed[a], placed[b]) {
+                (Some(_), None) => (a, b),
+                (None, Some(_)) => (b, a),
+                _ => continue,
+            };
+            let Some((at, turned)) = placed[from] else {
+                continue;
+            };
+            let sides = [figure.joints[from].side, figure.joints[to].side];
+            let far = match sides {
+                [Side::Center, Side::Center] => freedom.center,
+                [Side::Center, _] => freedom.first,
+                _ => freedom.later,
+            };
+            let turn = turned + rng.random_range(-far..far);
+            let bone = (figure.template[to] - figure.template[from]) * facing;
+            let bone = Vec2::from_angle(turn.to_radians()).rotate(bone);
+            placed[to] = Some((at + bone * rng.random_range(0.85..1.15), turn));
+        }
+    }
+    placed.into_iter().flatten().map(|(at, _)| at).collect()
+}
+
+/// Whether a flat drawing of the pose says where its joints are: limbs are not folded flat, ends do not lie on the
+/// bones of other limbs.
+pub(crate) fn is_readable(figure: &Figure, joints: &[Vec2]) -> bool {
+    let bones_at = |joint: usize| {
+        figure
+            .bones
+            .iter()
+            .filter(move |bone| bone.contains(&joint))
+    };
+    let unfolded = (0..joints.len()).all(|joint| {
+        let other = |bone: &[usize; 2]| joints[bone[0] + bone[1] - joint] - joints[joint];
+        bones_at(joint).all(|one| {
+            bones_at(joint).all(|two| one == two || other(one).angle_to(other(two)).abs() > 0.3)
+        })
+    });
+    unfolded
+        && (0..joints.len()).all(|joint| {
+            figure
+                .bones
+                .iter()
+                .filter(|bone| !bone.contains(&joint))
+                .all(|&[a, b]| {
+                    let line = joints[b] - joints[a];
+                    let along = (joints[joint] - joints[a]).dot(line) / line.length_squared();
+                    let nearest = joints[a] + line * along.clamp(0.0, 1.0);
+                    joints[joint].distance(nearest) > 0.07
+                })
+        })
+}
+
+/// The strokes of a drawing of `joints_px` in any order, direction and pieces. Bones in `undrawn` are left out.
+pub(crate) fn draw(
+    figure: &Figure,
+    rng: &mut ChaCha8Rng,
+    joints_px: &[Vec2],
+    undrawn: &[usize],
+    hand: Hand,
+    habits: Habits,
+) -> Vec<Stroke> {
+    let mut corners: Vec<Vec<Vec2>> = Vec::new();
+    let mut left: Vec<[usize; 2]> = (0..figure.bones.len())
+        .filter(|bone| !undrawn.contains(bone))
+        .map(|bone| figure.bones[bone])
+        .collect();
+    left.shuffle(rng);
+    let mut head = None;
+    let is_head = |bone: &[usize; 2]| bone.contains(&figure.path[0]);
+    if rng.random_bool(habits.loop_head)
+        && let Some(at) = left.iter().position(is_head)
+    {
+        let [a, b] = left.remove(at);
+        let (center, neck) = if a == figure.path[0] { (a, b) } else { (b, a) };
+        head = Some((joints_px[center], joints_px[neck]));
+    }
+    while let Some([a, b]) = left.pop() {
+        let mut walk = if rng.random() { vec![a, b] } else { vec![b, a] };
+        while rng.random_bool(habits.go_on) {
+            let at = walk[walk.len() - 1];
+            let Some(next) = left.iter().position(|bone| bone.contains(&at)) else {
+                break;
+            };
+            let [a, b] = left.remove(next);
+            walk.push(a + b - at);
+        }
+        let mut stroke = Vec::new();
+        for pair in walk.windows(2) {
+            let [from, to] = [pair[0], pair[1]].map(|joint| joints_px[joint]);
+            stroke.push(from + wobble(rng, hand.aim_px));
+            if rng.random_bool(habits.cut) {
+                let cut = from.lerp(to, rng.random_range(0.25..0.75));
+                stroke.push(cut + wobble(rng, hand.aim_px));
+                corners.push(std::mem::take(&mut stroke));
+                stroke.push(cut + wobble(rng, hand.aim_px));
+            }
+        }
+        stroke.push(joints_px[walk[walk.len() - 1]] + wobble(rng, hand.aim_px));
+        corners.push(stroke);
+    }
+    if let Some((center, neck)) = head {
+        corners.extend(looped(rng, center, neck, habits));
+    }
+    corners.shuffle(rng);
+    let mut time_s = 0.0;
+    corners
+        .into_iter()
+        .map(|mut corners| {
+            if rng.random() {
+                corners.reverse();
+            }
+            time_s += 0.3;
+            line(rng, &corners, hand, &mut time_s)
+        })
+        .collect()
+}
+
+/// A loop round the head and the line from it to the neck, in one stroke or in two.
+fn looped(rng: &mut ChaCha8Rng, center: Vec2, neck: Vec2, habits: Habits) -> Vec<Vec<Vec2>> {
+    let (least, most) = habits.loop_radius;
+    let radius = center.distance(neck) * rng.random_range(least..most);
+    let down = (neck - center).normalize();
+    let tall = rng.random_range(0.9..1.15);
+    let point = |turn: f32| {
+        let (sin, cos) = turn.sin_cos();
+        center + down * radius * tall * cos + down.perp() * radius * sin
+    };
+    // A loop is seldom closed exactly.
+    let begin = if rng.random() {
+        0.0
+    } else {
+        rng.random_range(0.0..std::f32::consts::TAU)
+    };
+    let whole = std::f32::consts::TAU * rng.random_range(0.96..1.05);
+    let mut ring: Vec<Vec2> = (0..=24)
+        .map(|i| point(begin + whole * i as f32 / 24.0))
+        .collect();
+    let line = vec![point(0.0), neck];
+    if begin == 0.0 && rng.random() {
+        ring.push(neck);
+        return vec![ring];
+    }
+    vec![ring, line]
+}
