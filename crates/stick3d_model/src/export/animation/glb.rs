@@ -6,7 +6,7 @@ use gltf::json;
 use gltf::json::animation::Property;
 use gltf::json::mesh::MorphTarget;
 
-use super::reduce::{Morphs, reduce};
+use super::reduce::{Morphs, Shape, Target, reduce};
 use super::{AnimationError, AnimationMesh, Frame, LEAST_TOLERANCE_M};
 use crate::export::gltf_file::{GltfFile, Track};
 use crate::export::{ExportError, ExportMesh, check, glb};
@@ -139,14 +139,17 @@ fn write(
 }
 
 fn write_targets(file: &mut GltfFile, body: json::Index<json::Mesh>, morphs: &Morphs) {
-    let target = |shape: &super::reduce::Shape, file: &mut GltfFile| MorphTarget {
+    let target = |shape: &Shape, file: &mut GltfFile| MorphTarget {
         positions: Some(file.positions(&shape.positions)),
         normals: Some(file.normals(&shape.normals)),
         tangents: None,
     };
     let targets = morphs.targets.iter();
     let targets: Vec<_> = targets.map(|t| target(&t.shape, file)).collect();
-    let name = |target: &super::reduce::Target| format!("frame {}", target.frame + 1);
+    let name = |target: &Target| match target.frame {
+        Some(frame) => format!("frame {}", frame + 1),
+        None => "lowest".to_owned(),
+    };
     let names: Vec<_> = morphs.targets.iter().map(name).collect();
     file.morph(body, targets, &names);
 }

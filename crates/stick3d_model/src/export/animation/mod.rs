@@ -20,8 +20,8 @@
 //! In the glTF, the body of the first frame is the mesh. All others are the mesh plus a few shapes, the morph targets, each
 //! with a weight; an animation moves the weights, and the node over the ground. The targets are found by their need: the
 //! frame that is farthest from what the targets so far can make gives the next one, until every vertex of every frame is
-//! within the tolerance. So their number depends on how rich the motion is, not on how long it takes, and the first few
-//! hold most of it. Weights are between -1 and 1. Normals follow the same weights.
+//! within the tolerance. So their number depends on how rich the motion is, not on how long it takes. All weights are
+//! between 0 and 1. Normals follow the same weights. No extension of glTF is needed.
 
 mod frames;
 mod glb;

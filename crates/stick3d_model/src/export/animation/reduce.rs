@@ -7,7 +7,7 @@ use super::Frame;
 pub(super) struct Morphs {
     /// Positions and normals of the first body.
     pub(super) base: Shape,
-    /// Those that hold most come first.
+    /// In the order in which they were found, and what lifts them last.
     pub(super) targets: Vec<Target>,
     /// How far the farthest vertex of any body is from where its weights put it, metres.
     pub(super) worst_m: f32,
@@ -23,10 +23,10 @@ pub(super) struct Shape {
 /// A difference that is added to the base by weight.
 #[derive(Debug)]
 pub(super) struct Target {
-    /// The body that made it necessary.
-    pub(super) frame: usize,
+    /// The body that made it necessary; `None` for what [`lift`] adds.
+    pub(super) frame: Option<usize>,
     pub(super) shape: Shape,
-    /// One per body, between -1 and 1.
+    /// One per body, between 0 and 1.
     pub(super) weights: Vec<f32>,
 }
 
@@ -49,16 +49,43 @@ pub(super) fn reduce(frames: Vec<Frame>, tolerance_m: f32, most_targets: usize) 
     let mut targets = vec![];
     let worst_m = loop {
         let (frame, worst_m) = farthest(&missing);
-        if worst_m <= tolerance_m || targets.len() == most_targets {
+        // One more may come when they are lifted.
+        if worst_m <= tolerance_m || targets.len() + 1 >= most_targets {
             break worst_m;
         }
         targets.push(take_out(&mut missing, frame));
     };
+    lift(&mut targets);
     Some(Morphs {
         base,
         targets,
         worst_m,
     })
+}
+
+/// Brings all weights between 0 and 1, where Blender's import and Unity hold them: the lowest weight of every target
+/// becomes 0, and one more target, always at 1, has what that takes away.
+fn lift(targets: &mut Vec<Target>) {
+    let Some(mut lowest) = targets.first().map(|target| target.shape.zeros()) else {
+        return;
+    };
+    let mut bodies = 0;
+    for Target { shape, weights, .. } in &mut *targets {
+        let low = weights.iter().copied().fold(f32::INFINITY, f32::min);
+        let high = weights.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        lowest.add(low, shape);
+        let span = high - low;
+        weights.iter_mut().for_each(|w| *w = (*w - low) / span);
+        shape.scale(span);
+        bodies = weights.len();
+    }
+    if lowest.longest_m() > 0.0 {
+        targets.push(Target {
+            frame: None,
+            shape: lowest,
+            weights: vec![1.0; bodies],
+        });
+    }
 }
 
 /// The body with the farthest vertex, and how far that is.
@@ -74,28 +101,35 @@ fn farthest(missing: &[Shape]) -> (usize, f32) {
 
 /// Makes what is missing of one body a target, and takes it out of all of them.
 fn take_out(missing: &mut [Shape], frame: usize) -> Target {
-    let mut shape = missing[frame].clone();
+    let shape = missing[frame].clone();
     let square = shape.dot(&shape);
-    let mut weights: Vec<f32> = missing
-        .iter_mut()
-        .map(|body| {
-            let weight = (body.dot(&shape) / square) as f32;
-            body.add(-weight, &shape);
-            weight
-        })
-        .collect();
-    let most = weights.iter().fold(1.0_f32, |most, w| most.max(w.abs()));
-    weights.iter_mut().for_each(|weight| *weight /= most);
-    let numbers = shape.positions.iter_mut().chain(&mut shape.normals);
-    numbers.flatten().for_each(|number| *number *= most);
+    let take = |body: &mut Shape| {
+        let weight = (body.dot(&shape) / square) as f32;
+        body.add(-weight, &shape);
+        weight
+    };
     Target {
-        frame,
+        frame: Some(frame),
+        weights: missing.iter_mut().map(take).collect(),
         shape,
-        weights,
     }
 }
 
 impl Shape {
+    /// No difference at all.
+    fn zeros(&self) -> Self {
+        let zeros = vec![[0.0; 3]; self.positions.len()];
+        Self {
+            positions: zeros.clone(),
+            normals: zeros,
+        }
+    }
+
+    fn scale(&mut self, factor: f32) {
+        let numbers = self.positions.iter_mut().chain(&mut self.normals);
+        numbers.flatten().for_each(|number| *number *= factor);
+    }
+
     /// Adds so much of another.
     fn add(&mut self, weight: f32, other: &Self) {
         let pairs = [

@@ -97,12 +97,13 @@ proptest! {
         let frames: Vec<Frame> = bodies.iter().map(|body| frame(0.0, *body)).collect();
         let morphs = reduce(frames.clone(), tolerance_m, MOST_TARGETS).unwrap();
         let worst_m = worst_m(&morphs, &frames);
-        prop_assert!(worst_m <= tolerance_m + 2e-6, "{worst_m}");
-        prop_assert!((worst_m - morphs.worst_m).abs() < 2e-6, "said {}, is {worst_m}", morphs.worst_m);
-        // Three vertices in space can differ from the first body in nine ways.
-        prop_assert!(morphs.targets.len() <= 9.min(frames.len() - 1), "{}", morphs.targets.len());
-        let weights = morphs.targets.iter().flat_map(|target| &target.weights);
-        prop_assert!(weights.into_iter().all(|weight| weight.abs() <= 1.0));
+        prop_assert!(worst_m <= tolerance_m + 5e-6, "{worst_m}");
+        prop_assert!((worst_m - morphs.worst_m).abs() < 5e-6, "said {}, is {worst_m}", morphs.worst_m);
+        prop_assert_eq!(&morphs.base.positions, &frames[0].positions);
+        // Three vertices in space can differ from the first body in nine ways; one more target lifts the weights.
+        prop_assert!(morphs.targets.len() <= 9.min(frames.len() - 1) + 1, "{}", morphs.targets.len());
+        let mut weights = morphs.targets.iter().flat_map(|target| &target.weights);
+        prop_assert!(weights.all(|weight| (0.0..=1.0).contains(weight)));
     }
 }
 
@@ -113,7 +114,10 @@ fn a_straight_way_needs_one_target_and_a_bend_another() {
         .map(|i| frame(f32::from(i), at(0.1 * f32::from(i), 0.0)))
         .collect();
     let morphs = reduce(straight, 1e-3, MOST_TARGETS).unwrap();
-    assert_eq!((morphs.targets.len(), morphs.targets[0].frame), (1, 8));
+    assert_eq!(
+        (morphs.targets.len(), morphs.targets[0].frame),
+        (1, Some(8))
+    );
     let bent: Vec<Frame> = (0_u8..9)
         .map(|i| {
             frame(
@@ -143,7 +147,8 @@ fn where_the_most_targets_are_not_enough_it_is_said_how_far_off_that_is() {
             frame(f32::from(i), body)
         })
         .collect();
-    let morphs = reduce(corners.clone(), 1e-3, 5).unwrap();
+    let morphs = reduce(corners.clone(), 1e-3, 6).unwrap();
+    // No weight is below 0 here, so nothing is to be lifted.
     assert_eq!(morphs.targets.len(), 5);
     assert!((morphs.worst_m - 0.4).abs() < 1e-6, "{}", morphs.worst_m);
     assert!((worst_m(&morphs, &corners) - 0.4).abs() < 1e-6);
@@ -250,9 +255,12 @@ fn a_file_names_its_targets_and_shows_the_first_frame_when_still() {
     let file = gltf::Gltf::from_slice(&bytes).unwrap();
     assert_eq!(file.extensions_required().count(), 0);
     let mesh = file.meshes().next().unwrap();
-    let names = mesh.extras().as_ref().unwrap().get();
-    assert!(names.starts_with("{\"targetNames\":[\"frame "), "{names}");
-    assert_eq!(names.matches("frame ").count(), report.target_count);
+    let extras: serde_json::Value =
+        serde_json::from_str(mesh.extras().as_ref().unwrap().get()).unwrap();
+    let names = extras["targetNames"].as_array().unwrap();
+    assert_eq!(names.len(), report.target_count);
+    assert!(names[0].as_str().unwrap().starts_with("frame "));
+    assert_eq!(names[names.len() - 1], "lowest");
     assert_eq!(mesh.weights().unwrap(), vec![0.0; report.target_count]);
     let primitive = mesh.primitives().next().unwrap();
     let reader = primitive.reader(|_| file.blob.as_deref());
