@@ -39,7 +39,9 @@ pub fn write_folder_atomically<E: From<io::Error>>(
     let temporary = builder.tempdir_in(folder).map_err(about)?;
     for file in files {
         let (name, bytes) = file?;
-        std::fs::write(temporary.path().join(name), bytes).map_err(about)?;
+        let file = std::fs::File::create(temporary.path().join(name));
+        file.and_then(|mut file| file.write_all(&bytes))
+            .map_err(about)?;
     }
     if path.is_dir() {
         // Refuses to remove anything but an empty folder.
