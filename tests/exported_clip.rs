@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use bevy::animation::AnimationPlugin;
 use bevy::asset::AssetPlugin;
-use bevy::gltf::{GltfAssetLabel, GltfPlugin};
+use bevy::gltf::{Gltf, GltfPlugin};
 use bevy::mesh::MeshPlugin;
 use bevy::mesh::morph::MorphWeights;
 use bevy::prelude::*;
@@ -62,37 +62,38 @@ fn app(folder: &Path) -> App {
     app
 }
 
-/// Loads `clip.glb` and starts its animation as the manual of Bevy says.
-fn play(app: &mut App) -> Entity {
-    let server = app.world().resource::<AssetServer>();
-    let clip = server.load(GltfAssetLabel::Animation(0).from_asset("clip.glb"));
-    let scene = server.load(GltfAssetLabel::Scene(0).from_asset("clip.glb"));
-    let (graph, node) = AnimationGraph::from_clip(clip.clone());
-    let graph = app
-        .world_mut()
-        .resource_mut::<Assets<AnimationGraph>>()
-        .add(graph);
-    app.world_mut().spawn(WorldAssetRoot(scene));
+/// Updates the app until something is there.
+fn wait<T>(app: &mut App, mut get: impl FnMut(&mut World) -> Option<T>) -> T {
     let start = Instant::now();
-    let mut players = app
-        .world_mut()
-        .query_filtered::<Entity, With<AnimationPlayer>>();
     loop {
-        assert!(start.elapsed() < Duration::from_secs(60), "it never loaded");
-        app.update();
-        let loaded = app
-            .world()
-            .resource::<Assets<AnimationClip>>()
-            .contains(&clip);
-        if let Some(entity) = players.iter(app.world()).next().filter(|_| loaded) {
-            let mut entity = app.world_mut().entity_mut(entity);
-            entity.insert(AnimationGraphHandle(graph));
-            let mut player = entity.get_mut::<AnimationPlayer>().unwrap();
-            player.play(node);
-            return entity.id();
+        if let Some(found) = get(app.world_mut()) {
+            return found;
         }
+        assert!(start.elapsed() < Duration::from_secs(60), "it never came");
         std::thread::sleep(Duration::from_millis(2));
+        app.update();
     }
+}
+
+/// Loads `clip.glb`, once and whole, and starts its animation.
+fn play(app: &mut App) -> (Entity, AnimationNodeIndex) {
+    let file: Handle<Gltf> = app.world().resource::<AssetServer>().load("clip.glb");
+    let (scene, clip) = wait(app, |world| {
+        let file = world.resource::<Assets<Gltf>>().get(&file)?;
+        Some((file.default_scene.clone()?, file.animations[0].clone()))
+    });
+    let (graph, node) = AnimationGraph::from_clip(clip);
+    let mut graphs = app.world_mut().resource_mut::<Assets<AnimationGraph>>();
+    let graph = AnimationGraphHandle(graphs.add(graph));
+    app.world_mut().spawn(WorldAssetRoot(scene));
+    let player = wait(app, |world| {
+        let mut players = world.query_filtered::<Entity, With<AnimationPlayer>>();
+        players.iter(world).next()
+    });
+    let mut entity = app.world_mut().entity_mut(player);
+    entity.insert(graph);
+    entity.get_mut::<AnimationPlayer>().unwrap().play(node);
+    (player, node)
 }
 
 /// Where Bevy puts the vertices: the mesh, what morph targets add, and the node's place.
@@ -144,7 +145,7 @@ fn plays(model: &[u8], sketches: &[&str]) -> AnimationReport {
     .unwrap();
 
     let mut app = app(folder.path());
-    let player = play(&mut app);
+    let (player, node) = play(&mut app);
     let mut latent = vec![0.0; inference.latent_len()];
     let mut meant = vec![[0.0; 3]; inference.vertex_count()];
     let (mut times_s, mut moved_m) = (vec![], 0.0_f32);
@@ -153,8 +154,7 @@ fn plays(model: &[u8], sketches: &[&str]) -> AnimationReport {
         app.update();
         app.update();
         let player = app.world().get::<AnimationPlayer>(player).unwrap();
-        let (_, playing) = player.playing_animations().next().unwrap();
-        let time_s = playing.seek_time();
+        let time_s = player.animation(node).unwrap().seek_time();
         times_s.push(time_s);
         motion.sample_into(time_s, &mut latent).unwrap();
         inference.decode_positions(&latent, &mut meant).unwrap();

@@ -85,7 +85,13 @@ pub(crate) struct AnimateArguments {
     #[arg(long, value_name = "FILE", requires = "seconds")]
     pub(crate) sketch: Vec<PathBuf>,
     /// From the first sketch to the last, seconds; the others are evenly spread between
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, conflicts_with = "clip")]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        value_parser = seconds,
+        conflicts_with = "clip",
+        allow_negative_numbers = true
+    )]
     pub(crate) seconds: Option<f32>,
     /// A clip file instead, with poses, times and all that the options below say if they are not given
     #[arg(long, value_name = "FILE.clip.ron")]

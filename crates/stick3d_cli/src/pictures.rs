@@ -87,8 +87,12 @@ pub(crate) fn write_png(path: &Path, picture: &RgbaImage) -> Outcome {
 pub(crate) fn save_png_sequence(folder: &Path, model: &Model, mut frames: Vec<Frame>) -> Outcome {
     frames.iter_mut().for_each(Frame::apply_root);
     let seen = frames.iter().flat_map(|frame| {
-        let points = frame.positions.iter().copied().map(Vec3::from);
-        corners(points).map(|corner| corner.to_array())
+        let [low, high] = corners(frame.positions.iter().copied().map(Vec3::from));
+        let [x, y, z] = [[low.x, high.x], [low.y, high.y], [low.z, high.z]];
+        x.map(|x| y.map(|y| z.map(|z| [x, y, z])))
+            .into_iter()
+            .flatten()
+            .flatten()
     });
     let stage = Stage::holding(&seen.collect::<Vec<_>>());
     let files = (1..).zip(&frames).map(|(number, frame)| {
