@@ -142,7 +142,7 @@ fn follow(
 ) {
     for ((body, place), mut camera) in bodies.iter().zip(&mut cameras) {
         let centre = place.transform_point(body.center.into());
-        let distance = 2.4 * Vec3::from(body.half_extents).length();
+        let distance = 3.2 * Vec3::from(body.half_extents).length();
         let from = Vec3::new(0.45, 0.28, 1.0).normalize() * distance;
         *camera = Transform::from_translation(centre + from).looking_at(centre, Vec3::Y);
     }
