@@ -63,8 +63,8 @@ pub(super) fn reduce(frames: Vec<Frame>, tolerance_m: f32, most_targets: usize) 
     })
 }
 
-/// Brings all weights between 0 and 1, where Blender's import and Unity hold them: the lowest weight of every target
-/// becomes 0, and one more target, always at 1, has what that takes away.
+/// Brings all weights between 0 and 1, for Blender's import cuts off negative ones: the lowest weight of every target becomes
+/// 0, and one more target, always at 1, has what that takes away.
 fn lift(targets: &mut Vec<Target>) {
     let Some(mut lowest) = targets.first().map(|target| target.shape.zeros()) else {
         return;
