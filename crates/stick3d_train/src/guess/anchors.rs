@@ -103,7 +103,12 @@ impl Anchors<'_> {
     }
 
     /// The vertices of which a measure is smallest.
-    fn first_by(&self, vertices: Vec<u32>, count: usize, measure: impl Fn(Vec3) -> f32) -> Vec<u32> {
+    fn first_by(
+        &self,
+        vertices: Vec<u32>,
+        count: usize,
+        measure: impl Fn(Vec3) -> f32,
+    ) -> Vec<u32> {
         let mut measured: Vec<(f32, u32)> = vertices
             .into_iter()
             .map(|v| (measure(self.rig.mesh.positions[v as usize]), v))

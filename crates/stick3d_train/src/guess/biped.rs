@@ -187,7 +187,10 @@ fn hand(view: &View<'_>, side: Side) -> Finding {
     let mut hands = arms(view).map(|pair| {
         let chain = pair.of(side);
         let hand = chain[wrist(view, chain)];
-        (hand, elbow_of(view, chain) == Some(hand))
+        (
+            hand,
+            elbow_of(view, chain).is_none_or(|elbow| elbow == hand),
+        )
     });
     match (hands.next(), hands.next()) {
         (Some((first, _)), Some((second, _))) => view.doubtful(&joint, first, second),
@@ -267,9 +270,8 @@ fn arms<'v>(view: &'v View<'_>) -> impl Iterator<Item = &'v LimbPair> {
         .legs
         .first()
         .map(|leg| mean_y(view, &leg.roots()));
-    let above = move |pair: &&LimbPair| {
-        hips_m.is_none_or(|hips_m| mean_y(view, &pair.roots()) > hips_m) && pair.chains[0].len() > 1
-    };
+    let above =
+        move |pair: &&LimbPair| hips_m.is_none_or(|hips_m| mean_y(view, &pair.roots()) > hips_m);
     let longest_m = view.limbs.free.iter().find(above).map(|arm| arm.length_m);
     view.limbs
         .free
@@ -307,8 +309,7 @@ fn wrist(view: &View<'_>, chain: &[usize]) -> usize {
             .filter(|&&c| !view.body.children(c).is_empty());
         children.len() >= 3 || fingers.count() >= 2
     };
-    let found =
-        (1..chain.len()).find(|&at| along[at] >= WRIST * whole_m && branches(chain[at]));
+    let found = (1..chain.len()).find(|&at| along[at] >= WRIST * whole_m && branches(chain[at]));
     found.unwrap_or(chain.len() - 1)
 }
 

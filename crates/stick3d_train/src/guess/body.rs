@@ -188,7 +188,10 @@ impl Body {
             bones.retain(|&b| self.bones[b].flesh.weight > 0.0);
         }
         let all = bones.clone();
-        bones.retain(|&b| !all.iter().any(|&other| other != b && self.is_below(b, other)));
+        bones.retain(|&b| {
+            !all.iter()
+                .any(|&other| other != b && self.is_below(b, other))
+        });
         bones
     }
 

@@ -24,7 +24,7 @@ mod tests;
 mod words;
 
 use glam::Vec3;
-use stick3d_figure::{Anchor, Figure, Side};
+use stick3d_figure::{Anchor, Figure};
 
 use crate::rig::Rig;
 use anchors::Anchors;

@@ -281,8 +281,13 @@ mod tests {
     #[test]
     fn what_all_names_begin_with_is_the_name_of_the_rig() {
         let names = [
-            "Knight", "Knight_Hips", "Knight_Arm_L", "Knight_Arm_R", "Knight_Leg_L",
-            "Knight_Leg_R", "Knight_Head",
+            "Knight",
+            "Knight_Hips",
+            "Knight_Arm_L",
+            "Knight_Arm_R",
+            "Knight_Leg_L",
+            "Knight_Leg_R",
+            "Knight_Head",
         ];
         let read = BoneName::read_all(names);
         let stems: Vec<&str> = read.iter().map(|name| name.stem.as_str()).collect();

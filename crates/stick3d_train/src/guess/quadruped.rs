@@ -66,10 +66,7 @@ pub(super) fn joints(view: &View<'_>, legs: &Legs) -> Vec<Finding> {
     let mut found = vec![forehead(view, head), shoulder];
     found.push(Finding::at("hip", Place::Heads(hips), false));
     found.extend(tail(view, legs, head));
-    let ends = [
-        ("f", &legs.front, shoulder_at),
-        ("b", &legs.back, hip_at),
-    ];
+    let ends = [("f", &legs.front, shoulder_at), ("b", &legs.back, hip_at)];
     for (end, pair, top) in ends {
         for side in SIDES {
             found.extend(leg(view, pair.of(side), top, |joint| {
@@ -98,10 +95,16 @@ fn votes_for_front(view: &View<'_>, first: &LimbPair, second: &LimbPair) -> f32 
         }
     };
     let mut votes = NAMES * (end_by_name(view, first) - end_by_name(view, second)).signum_or_zero();
-    for head in view.body.named(Role::Head, Side::Center, &view.symmetry.sides) {
+    for head in view
+        .body
+        .named(Role::Head, Side::Center, &view.symmetry.sides)
+    {
         votes += NAMES * nearer(view.body.bones[head].flesh.middle);
     }
-    for tail in view.body.named(Role::Tail, Side::Center, &view.symmetry.sides) {
+    for tail in view
+        .body
+        .named(Role::Tail, Side::Center, &view.symmetry.sides)
+    {
         votes -= NAMES * nearer(view.head(tail));
     }
     // Ears and eyes are the other pairs that a body has.
@@ -197,10 +200,11 @@ fn shoulder(view: &View<'_>, legs: &Legs, head: Named) -> (Finding, Vec3) {
         Named::None | Named::Several(..) => Vec::new(),
     };
     line.sort_by(|&a, &b| ahead(a).total_cmp(&ahead(b)));
-    let nearest = line
-        .iter()
-        .copied()
-        .min_by(|&a, &b| (ahead(a) - legs_m).abs().total_cmp(&(ahead(b) - legs_m).abs()));
+    let nearest = line.iter().copied().min_by(|&a, &b| {
+        (ahead(a) - legs_m)
+            .abs()
+            .total_cmp(&(ahead(b) - legs_m).abs())
+    });
     let Some(nearest) = nearest else {
         let roots = legs.front.roots();
         let missing = view.missing(
@@ -230,9 +234,8 @@ fn tail(view: &View<'_>, legs: &Legs, head: Named) -> Option<Finding> {
     let depth = |bone: usize| view.body.upward(bone).count();
     let last = |root: usize| {
         let below = view.body.below(root).into_iter();
-        let solid = below.filter(|&bone| {
-            view.weight(bone) > 0.0 && view.symmetry.sides[bone] == Side::Center
-        });
+        let solid = below
+            .filter(|&bone| view.weight(bone) > 0.0 && view.symmetry.sides[bone] == Side::Center);
         solid.max_by_key(|&bone| (depth(bone), bone))
     };
     match view.named(Role::Tail, Side::Center) {
@@ -258,10 +261,11 @@ fn tail(view: &View<'_>, legs: &Legs, head: Named) -> Option<Finding> {
             && !carries_head_or_legs(bone)
             && !view.body.is_below(bone, head)
     };
-    let tip = view
-        .middle()
-        .filter(behind)
-        .max_by(|&a, &b| depth(a).cmp(&depth(b)).then(view.head(b).y.total_cmp(&view.head(a).y)))?;
+    let tip = view.middle().filter(behind).max_by(|&a, &b| {
+        depth(a)
+            .cmp(&depth(b))
+            .then(view.head(b).y.total_cmp(&view.head(a).y))
+    })?;
     Some(Finding::at(JOINT, Place::Heads(vec![tip]), false))
 }
 

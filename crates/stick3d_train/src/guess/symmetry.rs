@@ -49,8 +49,8 @@ impl Symmetry {
             }
             return Some(symmetry);
         }
-        let placed = [Vec3::X, Vec3::Z]
-            .map(|across| Self::with(body, across, middle(body, across), false));
+        let placed =
+            [Vec3::X, Vec3::Z].map(|across| Self::with(body, across, middle(body, across), false));
         // A pair says more than a bone on the plane: a man with his arms out is flat.
         let explained = |symmetry: &Self| -> usize {
             let says = |bone: usize| match symmetry.sides[bone] {
@@ -64,7 +64,23 @@ impl Symmetry {
             .rev()
             .max_by_key(|symmetry| explained(symmetry))?;
         let paired = best.partners.iter().flatten().count() / 2;
-        (paired >= 2).then_some(best)
+        (paired >= 2).then(|| best.with_named_left(body))
+    }
+
+    /// The same with its left where names say so, if any do.
+    fn with_named_left(self, body: &Body) -> Self {
+        let toward_left = |bone: &BodyBone| match bone.says.side {
+            Some(Side::Left) => self.away_m(bone.head),
+            Some(Side::Right) => -self.away_m(bone.head),
+            Some(Side::Center) | None => 0.0,
+        };
+        let sum: f32 = body.bones.iter().map(toward_left).sum();
+        if sum == 0.0 {
+            self
+        } else {
+            let sign = sum.signum();
+            Self::with(body, sign * self.across, sign * self.offset_m, true)
+        }
     }
 
     /// The same with left and right exchanged.

@@ -27,7 +27,7 @@ pub(super) enum Role {
 type Names = &'static [&'static [&'static str]];
 
 const HEAD: Names = &[&["head", "skull"]];
-const NECK: Names = &[&["neck", "necklower", "lowerneck", "necktwist"], &["cervical"]];
+const NECK: Names = &[&["neck", "necklower", "lowerneck"], &["cervical"]];
 const PELVIS: Names = &[&["hips", "pelvis"], &["hip", "lowerbody", "cog"]];
 const UPPER_ARM: Names = &[
     &[
@@ -134,15 +134,62 @@ pub(super) const COPY_WORDS: &[&str] = &["org"];
 
 /// What programs and people put into every name; single letters are left out as well.
 pub(super) const HABITS: &[&str] = &[
-    "mixamorig", "mixamo", "armature", "skeleton", "rig", "bip", "biped", "valve", "cc", "base",
-    "character", "bone", "bn", "jnt", "joint", "jt", "sk", "bend", "stretch", "center", "centre",
+    "mixamorig",
+    "mixamo",
+    "armature",
+    "skeleton",
+    "rig",
+    "bip",
+    "biped",
+    "valve",
+    "cc",
+    "base",
+    "character",
+    "bone",
+    "bn",
+    "jnt",
+    "joint",
+    "jt",
+    "sk",
+    "bend",
+    "stretch",
+    "center",
+    "centre",
 ];
 
 /// Bones that help others and are no joints of a body.
 pub(super) const HELPERS: &[&str] = &[
-    "twist", "twst", "roll", "ik", "fk", "pole", "target", "ctrl", "control", "con", "end", "nub",
-    "site", "mch", "vis", "tweak", "helper", "dummy", "null", "socket", "attach", "prop", "weapon",
-    "look", "aim", "corrective", "bulge", "muscle", "master", "goal", "effector",
+    "twist",
+    "twst",
+    "roll",
+    "ik",
+    "fk",
+    "pole",
+    "target",
+    "ctrl",
+    "control",
+    "con",
+    "end",
+    "nub",
+    "site",
+    "mch",
+    "vis",
+    "tweak",
+    "helper",
+    "dummy",
+    "null",
+    "socket",
+    "attach",
+    "prop",
+    "weapon",
+    "look",
+    "aim",
+    "corrective",
+    "bulge",
+    "muscle",
+    "master",
+    "goal",
+    "effector",
 ];
 
 /// Things that come in pairs or hang down, and are no limbs.
@@ -155,10 +202,35 @@ pub(super) const TRIMMINGS: &[&str] = &[
 
 /// Legs whose bones are called so are at the front; what is called like a man's leg is at the back.
 pub(super) const FRONT_LEG_STEMS: &[&str] = &[
-    "scapula", "clavicle", "shoulder", "upperarm", "arm", "forearm", "lowerarm", "humerus",
-    "radius", "ulna", "elbow", "carpus", "metacarpus", "wrist", "hand",
+    "scapula",
+    "clavicle",
+    "shoulder",
+    "upperarm",
+    "arm",
+    "forearm",
+    "lowerarm",
+    "humerus",
+    "radius",
+    "ulna",
+    "elbow",
+    "carpus",
+    "metacarpus",
+    "wrist",
+    "hand",
 ];
 pub(super) const BACK_LEG_STEMS: &[&str] = &[
-    "thigh", "upleg", "femur", "hip", "stifle", "gaskin", "shin", "calf", "tibia", "hock",
-    "tarsus", "metatarsus", "knee", "ankle",
+    "thigh",
+    "upleg",
+    "femur",
+    "hip",
+    "stifle",
+    "gaskin",
+    "shin",
+    "calf",
+    "tibia",
+    "hock",
+    "tarsus",
+    "metatarsus",
+    "knee",
+    "ankle",
 ];
