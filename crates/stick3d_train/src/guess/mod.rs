@@ -95,6 +95,12 @@ pub fn guess(rig: &Rig, name: &str) -> Result<Guess, GuessError> {
         }
     }
     figure.template = template::template(&figure, &places, found.right, rig);
+    let unit_m = template::unit_m(rig);
+    if unit_m != 1.0 {
+        found.notes.push(format!(
+            "the body is too large to be in metres, as glTF has it; its unit is taken as {unit_m} m"
+        ));
+    }
     let absent: Vec<String> = figure
         .joints
         .iter()

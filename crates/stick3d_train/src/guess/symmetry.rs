@@ -34,23 +34,33 @@ impl Symmetry {
     /// no two pairs.
     pub(super) fn find(body: &Body) -> Option<Self> {
         let by_name = partners_by_name(body);
-        let pairs = body
-            .living()
-            .filter(|&bone| by_name[bone].is_some_and(|other| body.bones[other].lives))
-            .count()
-            / 2;
-        if pairs >= 2 {
-            let across = named_direction(body, &by_name)?;
-            let offset_m = middle(body, across);
-            let mut symmetry = Self::with(body, across, offset_m, true);
-            // A name is more certain than a place: a rest pose need not be symmetric.
-            for (partner, named) in symmetry.partners.iter_mut().zip(&by_name) {
-                *partner = named.or(*partner);
-            }
-            return Some(symmetry);
+        let pairs: Vec<(Vec3, Vec3)> = (0..body.bones.len())
+            .filter(|&bone| body.bones[bone].says.side == Some(Side::Left))
+            .filter_map(|bone| Some((bone, by_name[bone]?)))
+            .filter(|&(left, right)| body.bones[left].lives || body.bones[right].lives)
+            .map(|(left, right)| (body.bones[left].head, body.bones[right].head))
+            .collect();
+        if pairs.len() < 2 {
+            return Self::find_by_place(body);
         }
-        let placed =
-            [Vec3::X, Vec3::Z].map(|across| Self::with(body, across, middle(body, across), false));
+        let across = named_direction(&pairs)?;
+        let middles = pairs.iter().map(|(l, r)| across.dot(*l + *r) / 2.0);
+        let mut symmetry = Self::with(body, across, median(middles.collect()), true);
+        // A name is more certain than a place: a rest pose need not be symmetric.
+        for (partner, named) in symmetry.partners.iter_mut().zip(&by_name) {
+            *partner = named.or(*partner);
+        }
+        Some(symmetry)
+    }
+
+    fn find_by_place(body: &Body) -> Option<Self> {
+        let mut planes = Vec::new();
+        for across in [Vec3::Z, Vec3::X] {
+            let along = || body.living().map(|bone| across.dot(body.bones[bone].head));
+            // As many bones are on one side as on the other, and most bodies stand in the middle of their file.
+            let offsets = [0.0, median(along().collect())];
+            planes.extend(offsets.map(|offset_m| Self::with(body, across, offset_m, false)));
+        }
         // A pair says more than a bone on the plane: a man with his arms out is flat.
         let explained = |symmetry: &Self| -> usize {
             let says = |bone: usize| match symmetry.sides[bone] {
@@ -59,10 +69,7 @@ impl Symmetry {
             };
             body.living().map(says).sum()
         };
-        let best = placed
-            .into_iter()
-            .rev()
-            .max_by_key(|symmetry| explained(symmetry))?;
+        let best = planes.into_iter().max_by_key(explained)?;
         let paired = best.partners.iter().flatten().count() / 2;
         (paired >= 2).then(|| best.with_named_left(body))
     }
@@ -171,30 +178,43 @@ fn partners_by_name(body: &Body) -> Vec<Option<usize>> {
         .collect()
 }
 
-/// From right to left, by all named pairs: horizontal, along an axis if it is near one.
-fn named_direction(body: &Body, partners: &[Option<usize>]) -> Option<Vec3> {
-    let mut sum = Vec3::ZERO;
-    for bone in body.living() {
-        if let (Some(Side::Left), Some(right)) = (body.bones[bone].says.side, partners[bone]) {
-            sum += body.bones[bone].head - body.bones[right].head;
-        }
-    }
-    let across = sum.reject_from(Vec3::Y).try_normalize()?;
+/// From right to left: horizontal, along an axis if it is near one. Limbs may be bent to either side, so that only
+/// pairs count that agree with the one that most others agree with.
+fn named_direction(pairs: &[(Vec3, Vec3)]) -> Option<Vec3> {
+    let flat = |(left, right): &(Vec3, Vec3)| (*left - *right).reject_from(Vec3::Y);
+    let apart: Vec<Vec3> = pairs.iter().map(flat).collect();
+    let agreement = |one: Vec3| -> f32 {
+        let one = one.normalize_or_zero();
+        apart
+            .iter()
+            .map(|other| other.normalize_or_zero().dot(one))
+            .sum()
+    };
+    let most = apart
+        .iter()
+        .copied()
+        .max_by(|&a, &b| agreement(a).total_cmp(&agreement(b)))?
+        .try_normalize()?;
+    let agrees = |other: &&Vec3| most.dot(**other) > 0.0 && near(most, **other);
+    let across = apart.iter().filter(agrees).sum::<Vec3>().try_normalize()?;
     let axes = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
-    let near = |axis: &Vec3| axis.dot(across) > 0.0 && axis.cross(across).length() < SQUARE;
-    Some(axes.into_iter().find(near).unwrap_or(across))
+    let axis = axes
+        .into_iter()
+        .find(|axis| axis.dot(across) > 0.0 && near(*axis, across));
+    Some(axis.unwrap_or(across))
 }
 
-/// The middle of all bones along a direction: as many are on one side as on the other.
-fn middle(body: &Body, across: Vec3) -> f32 {
-    let mut along: Vec<f32> = body
-        .living()
-        .map(|bone| across.dot(body.bones[bone].head))
-        .collect();
-    along.sort_by(f32::total_cmp);
-    match along.len() {
+/// Whether the line of a vector is nearer than [`SQUARE`] to a unit vector's.
+fn near(axis: Vec3, other: Vec3) -> bool {
+    axis.cross(other).length() < SQUARE * other.length()
+}
+
+/// The middle of some numbers: as many are below as above.
+fn median(mut numbers: Vec<f32>) -> f32 {
+    numbers.sort_by(f32::total_cmp);
+    match numbers.len() {
         0 => 0.0,
-        count if count % 2 == 1 => along[count / 2],
-        count => (along[count / 2 - 1] + along[count / 2]) / 2.0,
+        count if count % 2 == 1 => numbers[count / 2],
+        count => (numbers[count / 2 - 1] + numbers[count / 2]) / 2.0,
     }
 }

@@ -11,6 +11,18 @@ const HIDDEN: f32 = 0.06;
 /// A hidden far leg is drawn this much ahead, metres for every metre that it is below the root.
 const AHEAD: f32 = 0.13;
 
+/// No body is larger than this, metres: a file that says so is in another unit.
+const LARGEST_M: f32 = 30.0;
+
+/// Metres of the unit that a rig is in: 1 as glTF has it, unless the body would be a giant's.
+pub(super) fn unit_m(rig: &Rig) -> f32 {
+    let points = || rig.mesh.positions.iter().copied();
+    let low = points().fold(Vec3::INFINITY, Vec3::min);
+    let size = (points().fold(Vec3::NEG_INFINITY, Vec3::max) - low).max_element();
+    let fits = |unit: &f32| unit * size <= LARGEST_M;
+    [1.0, 0.01, 0.001].into_iter().find(fits).unwrap_or(1.0)
+}
+
 /// One point per joint, metres: x along `right` from the middle of the body, y up from the ground.
 ///
 /// Joints without a place are where the template has them that the figure came with, at the body's size.
@@ -20,8 +32,9 @@ pub(super) fn template(
     right: Vec3,
     rig: &Rig,
 ) -> Vec<Vec2> {
-    let ground_m = lowest(rig.mesh.positions.iter().map(|p| p.y));
-    let flat = |place: &Vec3| Vec2::new(right.dot(*place), place.y - ground_m);
+    let unit_m = unit_m(rig);
+    let ground = lowest(rig.mesh.positions.iter().map(|p| p.y));
+    let flat = |place: &Vec3| unit_m * Vec2::new(right.dot(*place), place.y - ground);
     let flat: Vec<Option<Vec2>> = places.iter().map(|p| p.as_ref().map(flat)).collect();
     let middle_x = middle_x(figure, &flat);
     let likeness = size(flat.iter().flatten()) / size(figure.template.iter());

@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use glam::{Quat, Vec3};
 use stick3d_figure::{Anchor, Figure};
 
+use crate::guess::template::unit_m;
 use crate::guess::{Guess, direction, guess};
 use crate::rig::{Rig, regressor};
 
@@ -16,6 +17,8 @@ fn read(file: &str) -> Rig {
 
 static HUMAN: LazyLock<Rig> = LazyLock::new(|| read("human.glb"));
 static HORSE: LazyLock<Rig> = LazyLock::new(|| read("horse.glb"));
+static MAN: LazyLock<Guess> = LazyLock::new(|| guess(&HUMAN, "man").unwrap());
+static MARE: LazyLock<Guess> = LazyLock::new(|| guess(&HORSE, "mare").unwrap());
 
 /// How far every joint is guessed from where the figure made by hand has it, metres.
 fn misses(guess: &Guess, figure: &Figure, rig: &Rig) -> Vec<(String, f32)> {
@@ -31,7 +34,6 @@ fn assert_near(guess: &Guess, figure: &Figure, rig: &Rig, bar_m: f32) {
     assert_eq!(guess.faults, [], "{:?}", guess.notes);
     assert_eq!(guess.figure.path, figure.path);
     for (joint, miss_m) in misses(guess, figure, rig) {
-        println!("{joint}: {:.1} cm", 100.0 * miss_m);
         assert!(miss_m <= bar_m, "{joint} is off by {miss_m} m");
     }
 }
@@ -59,8 +61,8 @@ fn turned(rig: &Rig, degrees: f32) -> Rig {
 
 #[test]
 fn the_shipped_man_is_guessed_within_three_centimetres() {
-    let guess = guess(&HUMAN, "man").unwrap();
-    assert_near(&guess, Figure::human(), &HUMAN, 0.03);
+    let guess = &*MAN;
+    assert_near(guess, Figure::human(), &HUMAN, 0.03);
     assert_eq!(direction(guess.forward), "+Z");
     assert_eq!(guess.figure.name, "man");
     let neck = guess.figure.joint_index("neck").unwrap();
@@ -72,8 +74,8 @@ fn the_shipped_man_is_guessed_within_three_centimetres() {
 
 #[test]
 fn the_shipped_horse_is_guessed_within_five_centimetres() {
-    let guess = guess(&HORSE, "mare").unwrap();
-    assert_near(&guess, Figure::horse(), &HORSE, 0.05);
+    let guess = &*MARE;
+    assert_near(guess, Figure::horse(), &HORSE, 0.05);
     assert_eq!(direction(guess.forward), "+X");
     assert_eq!(guess.figure.views, Figure::horse().views);
 }
@@ -111,34 +113,43 @@ fn renamed(figure: &Figure, rig: &Rig) -> Figure {
 
 #[test]
 fn the_template_is_the_same_whichever_way_the_rig_faces() {
-    for rig in [&*HUMAN, &*HORSE] {
-        let straight = guess(rig, "body").unwrap().figure;
+    for (rig, straight) in [(&HUMAN, &MAN), (&HORSE, &MARE)] {
         let about = guess(&turned(rig, 90.0), "body").unwrap();
-        for (one, other) in straight.template.iter().zip(&about.figure.template) {
+        let template = &straight.figure.template;
+        for (one, other) in template.iter().zip(&about.figure.template) {
             assert!(one.distance(*other) < 2e-3, "{one} {other}");
         }
-        let again =
-            Quat::from_rotation_y(90_f32.to_radians()) * guess(rig, "body").unwrap().forward;
-        assert!(about.forward.abs_diff_eq(again, 1e-4));
+        let forward = Quat::from_rotation_y(90_f32.to_radians()) * straight.forward;
+        assert!(about.forward.abs_diff_eq(forward, 1e-4));
     }
 }
 
 #[test]
+fn a_file_in_centimetres_gives_a_template_in_metres() {
+    let mut rig = HUMAN.clone();
+    assert_eq!(unit_m(&rig), 1.0);
+    for position in &mut rig.mesh.positions {
+        *position *= 100.0;
+    }
+    assert_eq!(unit_m(&rig), 0.01);
+}
+
+#[test]
 fn the_template_is_the_body_as_it_is_usually_drawn() {
-    let man = guess(&HUMAN, "man").unwrap().figure;
+    let man = &MAN.figure;
     let at = |figure: &Figure, name: &str| figure.template[figure.joint_index(name).unwrap()];
     assert!(
-        at(&man, "hand_r").x < -0.4 && at(&man, "hand_l").x > 0.4,
+        at(man, "hand_r").x < -0.4 && at(man, "hand_l").x > 0.4,
         "his right is on the left"
     );
-    assert!((1.6..1.8).contains(&at(&man, "forehead").y));
-    let mare = guess(&HORSE, "mare").unwrap().figure;
+    assert!((1.6..1.8).contains(&at(man, "forehead").y));
+    let mare = &MARE.figure;
     assert!(
-        at(&mare, "forehead").x > at(&mare, "shoulder").x,
+        at(mare, "forehead").x > at(mare, "shoulder").x,
         "she walks to the right"
     );
     assert!(
-        at(&mare, "foot_fl").x > at(&mare, "foot_fr").x + 0.1,
+        at(mare, "foot_fl").x > at(mare, "foot_fr").x + 0.1,
         "far legs are a step ahead"
     );
     for joint in 0..mare.joint_count() {
