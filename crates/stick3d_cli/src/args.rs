@@ -182,7 +182,7 @@ pub(crate) enum FigureCommand {
 #[derive(Debug, Args)]
 pub(crate) struct FigureInitArguments {
     /// A rigged body: glTF with a skin
-    #[arg(value_name = "RIG.glb", required_unless_present = "mesh", conflicts_with = "mesh")]
+    #[arg(value_name = "RIG.glb", required_unless_present = "mesh", conflicts_with_all = ["mesh", "preset"])]
     pub(crate) rig: Option<PathBuf>,
     /// What to call the figure of a rigged body; the rig's file name without it
     #[arg(long, value_name = "NAME", requires = "rig")]

@@ -16,8 +16,9 @@ const VERTICES: usize = 24;
 const END_VERTICES: usize = 12;
 const END_SHARE: f32 = 0.1;
 
-/// The middle of a head is nearer to its plane than these shares of its half width, whichever is enough.
-const PROFILE: [f32; 3] = [0.2, 0.5, 1.0];
+/// The middle of a head is nearer to its plane than the first of these shares of its half width that leaves enough of
+/// it. Antlers are wide.
+const PROFILE: [f32; 5] = [0.02, 0.05, 0.1, 0.3, 1.0];
 
 /// A profile has at least so many vertices.
 const PROFILE_VERTICES: usize = 12;

@@ -34,7 +34,7 @@ const TOES: f32 = 0.01;
 const NECK: f32 = 0.02;
 
 /// The forehead is this much above straight ahead from the middle of the head, radians.
-const FOREHEAD_RAD: f32 = 0.3;
+const FOREHEAD_RAD: f32 = 0.5;
 
 /// Whether names say that the body has arms and legs like a man's.
 pub(super) fn is_named(view: &View<'_>) -> bool {

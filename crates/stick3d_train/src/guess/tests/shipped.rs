@@ -20,21 +20,18 @@ static HORSE: LazyLock<Rig> = LazyLock::new(|| read("horse.glb"));
 static MAN: LazyLock<Guess> = LazyLock::new(|| guess(&HUMAN, "man").unwrap());
 static MARE: LazyLock<Guess> = LazyLock::new(|| guess(&HORSE, "mare").unwrap());
 
-/// How far every joint is guessed from where the figure made by hand has it, metres.
-fn misses(guess: &Guess, figure: &Figure, rig: &Rig) -> Vec<(String, f32)> {
-    let at = |figure: &Figure| regressor(figure, rig).unwrap().joints(&rig.mesh.positions);
-    let (guessed, made) = (at(&guess.figure), at(figure));
-    let names = figure.joints.iter().map(|joint| joint.name.clone());
-    names
-        .zip(guessed.iter().zip(&made).map(|(a, b)| a.distance(*b)))
-        .collect()
-}
-
 fn assert_near(guess: &Guess, figure: &Figure, rig: &Rig, bar_m: f32) {
     assert_eq!(guess.faults, [], "{:?}", guess.notes);
     assert_eq!(guess.figure.path, figure.path);
-    for (joint, miss_m) in misses(guess, figure, rig) {
-        assert!(miss_m <= bar_m, "{joint} is off by {miss_m} m");
+    let at = |figure: &Figure| regressor(figure, rig).unwrap().joints(&rig.mesh.positions);
+    let (guessed, made) = (at(&guess.figure), at(figure));
+    for (joint, (guessed, made)) in figure.joints.iter().zip(guessed.iter().zip(&made)) {
+        let miss_m = guessed.distance(*made);
+        let name = &joint.name;
+        assert!(
+            miss_m <= bar_m,
+            "{name} is at {guessed}, {miss_m} m from {made}"
+        );
     }
 }
 
