@@ -49,7 +49,7 @@ pub(crate) enum Command {
     /// Makes figure files: which joints a body has and how it is drawn
     #[command(
         subcommand,
-        after_help = "Example:\n  \
+        after_help = "Examples:\n  stick3d figure init character.glb --out character.ron\n  \
                       stick3d figure init --mesh scape/mesh000.ply --preset scape --out scape.ron"
     )]
     Figure(FigureCommand),
@@ -294,24 +294,34 @@ pub(crate) struct EvalArguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum FigureCommand {
-    /// Writes a figure file whose joints are found on a mesh by its shape
+    /// Writes a first figure file: joints from a rig's bones, or found on a mesh by its shape
+    #[command(
+        after_help = "Examples:\n  stick3d figure init character.glb --out character.ron\n  \
+                      stick3d figure init --mesh scape/mesh000.ply --preset scape --out scape.ron"
+    )]
     Init(FigureInitArguments),
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct FigureInitArguments {
-    /// A mesh of the set that stands: OFF, PLY or OBJ
-    #[arg(long, value_name = "FILE")]
-    pub(crate) mesh: PathBuf,
-    /// Which kind of body it is
-    #[arg(long, value_name = "PRESET", value_parser = preset)]
-    pub(crate) preset: Preset,
+    /// A rigged body: glTF with a skin
+    #[arg(value_name = "RIG.glb", required_unless_present = "mesh", conflicts_with_all = ["mesh", "preset"])]
+    pub(crate) rig: Option<PathBuf>,
+    /// What to call the figure of a rigged body; the rig's file name without it
+    #[arg(long, value_name = "NAME", requires = "rig")]
+    pub(crate) name: Option<String>,
+    /// Or a mesh of a set that stands: OFF, PLY or OBJ
+    #[arg(long, value_name = "FILE", requires = "preset")]
+    pub(crate) mesh: Option<PathBuf>,
+    /// Which kind of body the mesh is
+    #[arg(long, value_name = "PRESET", value_parser = preset, requires = "mesh")]
+    pub(crate) preset: Option<Preset>,
     /// Which axis of the mesh points up
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, value_enum, default_value_t, requires = "mesh")]
     pub(crate) up: Up,
-    /// Where to write the figure
+    /// Where to write the figure; without it figure.ron, which must not be there yet
     #[arg(long, value_name = "FILE.ron")]
-    pub(crate) out: PathBuf,
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// A preset by its name.

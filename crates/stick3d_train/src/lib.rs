@@ -7,6 +7,7 @@ pub mod bake;
 pub mod dataset;
 pub mod evaluate;
 pub mod format;
+pub mod guess;
 pub mod landmark;
 pub mod meshes;
 pub mod pose;

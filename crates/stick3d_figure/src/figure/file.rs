@@ -112,6 +112,18 @@ impl TryFrom<FigureFile> for Figure {
     }
 }
 
+impl FigureFile {
+    /// The file without a joint, its bones and its points of the path; a point that is then visited twice at once is
+    /// visited once.
+    pub(super) fn without(mut self, joint: &str) -> Self {
+        self.joints.retain(|entry| entry.name != joint);
+        self.bones.retain(|(a, b)| a != joint && b != joint);
+        self.path.retain(|name| name != joint);
+        self.path.dedup();
+        self
+    }
+}
+
 struct Check<'a> {
     file: &'a FigureFile,
 }

@@ -142,6 +142,16 @@ impl Figure {
             })
     }
 
+    /// The figure without one of its ends, as for a body that has no tail.
+    ///
+    /// # Errors
+    /// [`FigureError::UnknownJoint`]; [`FigureError::Inconsistent`] or [`FigureError::NoMirror`] when the rest is no
+    /// figure, as the joint was none that ends a limb of the middle.
+    pub fn without(&self, joint: &str) -> Result<Self, FigureError> {
+        self.joint_index(joint)?;
+        FigureFile::from(self.clone()).without(joint).try_into()
+    }
+
     /// The joint on the other side of the body; a joint of the middle, or an index out of range, is its own mirror.
     pub fn mirror_of(&self, joint: usize) -> usize {
         self.mirror.get(joint).copied().unwrap_or(joint)
@@ -244,6 +254,21 @@ mod tests {
                 .unwrap()
                 .contains("views")
         );
+    }
+
+    #[test]
+    fn an_end_may_be_left_out() {
+        let horse = Figure::horse();
+        let bobtail = horse.without("tail").unwrap();
+        assert_eq!((bobtail.joint_count(), bobtail.path_len()), (11, 19));
+        assert_eq!(bobtail.joints[bobtail.path[18]].name, "hip");
+        let headless = horse.without("forehead").unwrap();
+        assert_eq!(headless.joints[headless.path[0]].name, "shoulder");
+        let pair = ["knee_fr", "knee_fl"].map(|name| bobtail.joint_index(name).unwrap());
+        assert_eq!(bobtail.mirror_of(pair[0]), pair[1]);
+        for joint in ["shoulder", "foot_fr", "hip", "tale"] {
+            assert!(horse.without(joint).is_err(), "{joint}");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use glam::{Mat3, Vec3};
 
 use super::limbs::Limbs;
 use super::surface::{Ring, Surface};
-use super::{Found, LandmarkError, facing, longest, lower};
+use super::{Found, LandmarkError, facing_below, longest, lower};
 
 /// Shares of the way from a toe to the crotch, which is half of the way from toe to toe.
 const FOOT: f32 = 0.16;
@@ -64,7 +64,7 @@ pub(super) fn joints(surface: &Surface<'_>) -> Result<Found, LandmarkError> {
     let ring = |ring: Ring| ring.vertices;
     let middle = longest(surface, crown, HEAD * narrowest, "forehead")?.centre;
     let (sin, cos) = FOREHEAD_RAD.sin_cos();
-    let forehead = facing(surface, crown, narrowest, middle, cos * forward + sin * up);
+    let forehead = facing_below(surface, crown, narrowest, middle, cos * forward + sin * up);
     let joints = vec![
         ("forehead", forehead),
         ("neck", ring(neck)),

@@ -132,25 +132,38 @@ fn longest(
         .ok_or(LandmarkError::NoRing { joint })
 }
 
-/// Some vertices where a ray from `middle` leaves the surface, among those where a field is below `level`.
-fn facing(
+/// The vertices among `candidates` nearest to where a ray from `middle` leaves the surface, nearest first.
+pub(crate) fn facing(
+    positions: &[Vec3],
+    candidates: impl IntoIterator<Item = u32>,
+    middle: Vec3,
+    toward: Vec3,
+) -> Vec<u32> {
+    const VERTICES: usize = 12;
+    let mut near: Vec<(f32, u32)> = candidates
+        .into_iter()
+        .map(|vertex| {
+            let from_middle = positions[vertex as usize] - middle;
+            (from_middle.angle_between(toward), vertex)
+        })
+        .collect();
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    near.into_iter().take(VERTICES).map(|(_, v)| v).collect()
+}
+
+/// The vertices where a field is below `level` and a ray from `middle` leaves the surface, sorted.
+fn facing_below(
     surface: &Surface<'_>,
     field: &[f32],
     level: f32,
     middle: Vec3,
     toward: Vec3,
 ) -> Vec<u32> {
-    const VERTICES: usize = 12;
-    let mut near: Vec<(f32, u32)> = (0_u32..)
+    let below = (0_u32..)
         .zip(field)
         .filter(|(_, value)| **value < level)
-        .map(|(vertex, _)| {
-            let from_middle = surface.mesh.positions[vertex as usize] - middle;
-            (from_middle.angle_between(toward), vertex)
-        })
-        .collect();
-    near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut vertices: Vec<u32> = near.iter().take(VERTICES).map(|(_, v)| *v).collect();
+        .map(|(vertex, _)| vertex);
+    let mut vertices = facing(&surface.mesh.positions, below, middle, toward);
     vertices.sort_unstable();
     vertices
 }

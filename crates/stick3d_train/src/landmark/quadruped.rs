@@ -4,7 +4,7 @@ use glam::{Mat3, Vec3};
 
 use super::limbs::Limbs;
 use super::surface::{Ring, Surface};
-use super::{Found, LandmarkError, facing, longest};
+use super::{Found, LandmarkError, facing_below, longest};
 
 /// Shares of the way from a hoof to the trunk, half of the way from hoof to hoof of a pair.
 const FOOT: f32 = 0.105;
@@ -73,7 +73,7 @@ pub(super) fn joints(surface: &Surface<'_>) -> Result<Found, LandmarkError> {
     let nose = (surface.mesh.positions[muzzle.vertex as usize] - poll).normalize_or(forward);
     let (sin, cos) = FOREHEAD_RAD.sin_cos();
     let toward = cos * nose + sin * nose.cross(left).normalize_or(up);
-    let forehead = facing(surface, &muzzle.distances, POLL * neck, poll, toward);
+    let forehead = facing_below(surface, &muzzle.distances, POLL * neck, poll, toward);
     let ring = |ring: Ring| ring.vertices;
     let joints = vec![
         ("forehead", forehead),
