@@ -10,11 +10,12 @@ use nalgebra::{DMatrix, DVector};
 use stick3d_figure::{Anchor, Figure, JointRegressor};
 
 use super::{Pose, Rig, RigError};
+use crate::size::relative_size;
 
 /// Degrees that the fit bends a joint by, about each model axis.
 const BENDS_DEG: [f32; 4] = [-90.0, -45.0, 45.0, 90.0];
 
-/// Weight of "near a plain average" against "near the bone's head", in square metres.
+/// Weight of "near a plain average" against "near the bone's head", in square metres, on a body of usual size.
 const RIDGE_M2: f64 = 0.005;
 
 /// A vertex belongs to a joint's ring when the bones below and above the joint both hold this share of it.
@@ -144,11 +145,14 @@ fn slab(bone: usize, rig: &Rig) -> Vec<(u32, f64)> {
 /// sum 1 and the exact place at rest (Lagrange multipliers).
 fn solve(ring: &[u32], plain: &[f64], bones: &[usize], rig: &Rig) -> Option<Vec<f64>> {
     let size = ring.len();
+    let (low, high) = rig.mesh.bounds();
+    let relative = f64::from(relative_size((high - low).max_element()));
+    let ridge_m2 = RIDGE_M2 * relative * relative;
     let mut matrix = DMatrix::<f64>::zeros(size + 4, size + 4);
     let mut right = DVector::<f64>::zeros(size + 4);
     for (row, share) in plain.iter().enumerate() {
-        matrix[(row, row)] = RIDGE_M2;
-        right[row] = RIDGE_M2 * share;
+        matrix[(row, row)] = ridge_m2;
+        right[row] = ridge_m2 * share;
     }
     let bent = bent_offsets(ring, bones, rig);
     let per_pose = 1.0 / bent.len().max(1) as f64;
