@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::controls::Controls;
 use super::library::{NamedPose, PoseLibrary};
 use super::sampler::{PoseSampler, SampleKind};
-use crate::rig::{Clip, Rig};
+use crate::rig::{Clip, Pose, Rig};
 
 /// Into how many stretches a clip is parted; a library is split between them, so that what is held out is not a
 /// moment beside one that was trained on.
@@ -17,18 +17,29 @@ const LEAST_MOMENTS: usize = STRETCHES;
 /// Seed of the poses that fill up a library.
 const FILLING_SEED: u64 = 0xf111;
 
+/// How far a clip turns all bones on its way, radians.
+fn liveliness(clip: &Clip) -> f32 {
+    let steps = clip.poses.iter().zip(clip.poses.iter().skip(1));
+    let step = |(before, after): (&Pose, &Pose)| -> f32 {
+        let bones = before.rotations.iter().zip(&after.rotations);
+        bones.map(|(from, to)| from.angle_between(*to)).sum()
+    };
+    steps.map(step).sum()
+}
+
 impl PoseLibrary {
-    /// About `count` moments of the rig's clips, evenly spread over them, called `CLIP@SECONDS`.
+    /// About `count` moments of the rig's clips, called `CLIP@SECONDS`: the more a clip moves the more of them, evenly
+    /// spread over it.
     ///
     /// With controls that can make any rotation ([`Controls::unfold`]) they are exactly the clips' poses, else as near as
     /// the controls come.
     #[must_use]
     pub fn from_clips(controls: &Controls, count: usize) -> Self {
-        let total_s: f32 = controls.clips().iter().map(Clip::duration_s).sum();
+        let total: f32 = controls.clips().iter().map(liveliness).sum();
         let mut library = Self::default();
         let mut names = BTreeSet::new();
         for clip in controls.clips() {
-            let share = clip.duration_s() / total_s.max(f32::MIN_POSITIVE);
+            let share = liveliness(clip) / total.max(f32::MIN_POSITIVE);
             let moments = if clip.duration_s() > 0.0 {
                 ((count as f32 * share).round() as usize).max(LEAST_MOMENTS)
             } else {
