@@ -7,7 +7,7 @@ use crate::pose::spec::Lateral;
 use crate::rig::Rig;
 
 /// A bend at rest that is smaller than this says nothing about a hinge, degrees.
-const BENT_DEG: f32 = 5.0;
+const BENT_DEG: f32 = 2.0;
 
 /// The least a bone turns in the clips for its axis to be read from there (root of the mean square), degrees.
 const TURNING_DEG: f32 = 8.0;
@@ -94,9 +94,10 @@ pub(super) fn axes(rig: &Rig, anatomy: &Anatomy, bone: usize) -> Axes {
     }
     let along = direction(rig, anatomy, bone);
     let bend = match (anatomy.roles[bone], joint) {
-        (Some(Role::Limb(_)), Joint::Hinge { .. } | Joint::End) => fold(rig, anatomy, bone)
+        // What is straight and never moves folds as knees and elbows of people do.
+        (Some(Role::Limb(limb)), Joint::Hinge { .. } | Joint::End) => fold(rig, anatomy, bone)
             .or_else(|| clip_axis(rig, bone))
-            .unwrap_or(-left),
+            .unwrap_or(if anatomy.is_leg[limb] { left } else { -left }),
         (Some(Role::Limb(_)), _) if along.dot(left).abs() < ALONG => -left,
         // An arm that is held out swings forward.
         (Some(Role::Limb(_)), _) => along.cross(forward),
