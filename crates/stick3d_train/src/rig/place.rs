@@ -60,6 +60,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
+    use crate::size::relative_size;
 
     fn shipped(name: &str) -> Rig {
         let path = format!(
@@ -77,6 +78,8 @@ mod tests {
             let placement = rig.place(figure).unwrap();
             assert!(placement.is_none(), "{}: {placement:?}", figure.name);
             assert_eq!(rig, before);
+            let (low, high) = rig.mesh.bounds();
+            assert_eq!(relative_size((high - low).max_element()), 1.0);
         }
     }
 

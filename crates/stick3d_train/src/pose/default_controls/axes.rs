@@ -6,8 +6,11 @@ use super::anatomy::{Anatomy, Role};
 use crate::pose::spec::Lateral;
 use crate::rig::Rig;
 
+/// A hinge that is bent at rest by this folds further that way, whatever the clips do, degrees.
+const BENT_DEG: f32 = 15.0;
+
 /// A bend at rest that is smaller than this says nothing about a hinge, degrees.
-const BENT_DEG: f32 = 2.0;
+const SLIGHTLY_BENT_DEG: f32 = 2.0;
 
 /// The least a bone turns in the clips for its axis to be read from there (root of the mean square), degrees.
 const TURNING_DEG: f32 = 8.0;
@@ -31,8 +34,8 @@ pub(super) enum Joint {
     Girdle,
     /// A limb's first bone: turns all ways.
     Ball {
-        /// How far the limb is from hanging down, degrees.
-        raised_deg: f32,
+        /// How far an arm is from hanging down, degrees; nothing for a leg.
+        raised_deg: Option<f32>,
     },
     /// Knee or elbow: folds one way.
     Hinge {
@@ -95,9 +98,12 @@ pub(super) fn axes(rig: &Rig, anatomy: &Anatomy, bone: usize) -> Axes {
     let along = direction(rig, anatomy, bone);
     let bend = match (anatomy.roles[bone], joint) {
         // What is straight and never moves folds as knees and elbows of people do.
-        (Some(Role::Limb(limb)), Joint::Hinge { .. } | Joint::End) => fold(rig, anatomy, bone)
-            .or_else(|| clip_axis(rig, bone))
-            .unwrap_or(if anatomy.is_leg[limb] { left } else { -left }),
+        (Some(Role::Limb(limb)), Joint::Hinge { .. } | Joint::End) => {
+            fold(rig, anatomy, bone, BENT_DEG)
+                .or_else(|| clip_axis(rig, bone))
+                .or_else(|| fold(rig, anatomy, bone, SLIGHTLY_BENT_DEG))
+                .unwrap_or(if anatomy.is_leg[limb] { left } else { -left })
+        }
         (Some(Role::Limb(_)), _) if along.dot(left).abs() < ALONG => -left,
         // An arm that is held out swings forward.
         (Some(Role::Limb(_)), _) => along.cross(forward),
@@ -107,15 +113,17 @@ pub(super) fn axes(rig: &Rig, anatomy: &Anatomy, bone: usize) -> Axes {
     let bend = bend
         .try_normalize()
         .unwrap_or_else(|| along.any_orthonormal_vector());
-    let side = along.cross(bend);
+    // An arm or a leg of the left goes up or out.
+    let side = bend.cross(along);
     let mut turns = [
         (Turning::Bend, bend),
         (Turning::Side, side),
         (Turning::Twist, along),
     ];
-    // The middle one of three angles must stay clear of 90 degrees: an arm held out is lowered by as much.
-    if let Joint::Ball { raised_deg } = joint
-        && raised_deg > 45.0
+    // The middle one of three angles must stay clear of 90 degrees; arms are raised and lowered by more.
+    if let Joint::Ball {
+        raised_deg: Some(_),
+    } = joint
     {
         turns.swap(0, 1);
     }
@@ -186,11 +194,8 @@ fn joint(rig: &Rig, anatomy: &Anatomy, bone: usize) -> Joint {
             match line.len() {
                 depth if depth <= girdle => Joint::Girdle,
                 depth if depth == girdle + 1 => Joint::Ball {
-                    raised_deg: if anatomy.is_leg[limb] {
-                        0.0
-                    } else {
-                        raised_deg(direction(rig, anatomy, bone))
-                    },
+                    raised_deg: (!anatomy.is_leg[limb])
+                        .then(|| raised_deg(direction(rig, anatomy, bone))),
                 },
                 _ if goes_on => Joint::Hinge {
                     folded_deg: folded_deg(rig, anatomy, bone),
@@ -218,10 +223,10 @@ fn folded_deg(rig: &Rig, anatomy: &Anatomy, bone: usize) -> f32 {
         .map_or(0.0, |(above, own)| above.angle_between(own).to_degrees())
 }
 
-/// The axis about which a bone that is bent at rest folds further.
-fn fold(rig: &Rig, anatomy: &Anatomy, bone: usize) -> Option<Vec3> {
+/// The axis about which a bone that is bent at rest by at least so much folds further.
+fn fold(rig: &Rig, anatomy: &Anatomy, bone: usize, least_deg: f32) -> Option<Vec3> {
     let (above, own) = above_and_own(rig, anatomy, bone)?;
-    (above.angle_between(own).to_degrees() > BENT_DEG)
+    (above.angle_between(own).to_degrees() > least_deg)
         .then(|| above.cross(own).try_normalize())
         .flatten()
 }

@@ -38,15 +38,22 @@ pub(super) fn of_bone(joint: Joint, turning: Turning) -> Range {
         (Joint::Curve, Bend | Side) => range(-8.0, 8.0, 3.0),
         (Joint::Curve, Twist) => range(-5.0, 5.0, 2.0),
         (Joint::Girdle, _) => range(-10.0, 10.0, 3.0),
-        (Joint::Ball { raised_deg }, Side) if raised_deg > 45.0 => {
-            // Turning to the side about along x bend: up where the arm is held out.
-            range(
-                ARM_LOWERED_DEG - raised_deg,
-                ARM_RAISED_DEG - raised_deg,
-                35.0,
-            )
-        }
-        (Joint::Ball { raised_deg }, Bend) if raised_deg > 45.0 => range(-50.0, 85.0, 28.0),
+        (
+            Joint::Ball {
+                raised_deg: Some(raised_deg),
+            },
+            Side,
+        ) => range(
+            ARM_LOWERED_DEG - raised_deg,
+            ARM_RAISED_DEG - raised_deg,
+            35.0,
+        ),
+        (
+            Joint::Ball {
+                raised_deg: Some(_),
+            },
+            Bend,
+        ) => range(-50.0, 85.0, 28.0),
         (Joint::Ball { .. }, Bend) => range(-50.0, 55.0, 22.0),
         (Joint::Ball { .. }, Side) => range(-14.0, 30.0, 6.0),
         (Joint::Ball { .. }, Twist) => range(-15.0, 15.0, 5.0),
