@@ -35,16 +35,21 @@ pub(crate) enum Command {
                       --seconds 0.8 --past 0.5 --out wave.glb\n  \
                       stick3d animate --clip walk.clip.ron --repeat loop --format obj-sequence --out walk")]
     Animate(AnimateArguments),
-    /// Trains a model from a rig and a pose library, or from registered meshes
+    /// Trains a model from a rig and its poses, or from registered meshes
     #[command(
         after_help = "Example, the shipped model:\n  stick3d train --out assets/models/human.stick3d\n\n\
+                      Example, a rig of your own:\n  \
+                      stick3d train --rig fox.glb --figure fox.ron --out fox.stick3d\n\n\
                       Example, meshes without a rig:\n  \
                       stick3d figure init --mesh scape/mesh000.ply --preset scape --out scape.ron\n  \
                       stick3d train --meshes scape --figure scape.ron --out scape.stick3d"
     )]
     Train(TrainArguments),
     /// Measures a model on poses it never saw
-    #[command(after_help = "Example:\n  stick3d eval --model assets/models/human.stick3d --json")]
+    #[command(
+        after_help = "Example:\n  stick3d eval --model assets/models/human.stick3d --json\n  \
+                              stick3d eval --model fox.stick3d --rig fox.glb"
+    )]
     Eval(EvalArguments),
     /// Makes figure files: which joints a body has and how it is drawn
     #[command(
@@ -195,29 +200,28 @@ fn seconds(text: &str) -> Result<f32, String> {
     Err("a motion takes time: give more than 0 seconds".to_owned())
 }
 
-/// A rigged body with its poses.
+/// A rigged body with its poses. Without any of them it is the human's.
 #[derive(Debug, Args)]
 pub(crate) struct BodyFiles {
-    /// The rigged body
-    #[arg(long, value_name = "FILE", default_value = "assets/rigs/human.glb")]
-    pub(crate) rig: PathBuf,
-    /// The rig's degrees of freedom and their limits
-    #[arg(
-        long,
-        value_name = "FILE",
-        default_value = "assets/rigs/human.controls.ron"
-    )]
-    pub(crate) controls: PathBuf,
-    /// The pose library
-    #[arg(long, value_name = "FILE", default_value = "assets/poses/human.ron")]
-    pub(crate) poses: PathBuf,
+    /// The rigged body: a glTF with a skin; the human's without it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) rig: Option<PathBuf>,
+    /// The rig's degrees of freedom and their limits; found on its skeleton and its clips without it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) controls: Option<PathBuf>,
+    /// The pose library; moments of the rig's own clips without it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) poses: Option<PathBuf>,
+    /// About how many moments of the rig's clips are poses, too [default: 240, or 0 with a pose library]
+    #[arg(long, value_name = "COUNT")]
+    pub(crate) clip_poses: Option<usize>,
 }
 
 /// Registered meshes instead of a rigged body.
 #[derive(Debug, Args)]
 pub(crate) struct MeshFiles {
     /// A folder of registered meshes instead of a rig: OFF, PLY or OBJ, vertex by vertex the same points
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["rig", "controls", "poses"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["rig", "controls", "poses", "clip_poses"])]
     pub(crate) meshes: Option<PathBuf>,
     /// File name of the mesh that gives triangles, size and heading; the first without it
     #[arg(long, value_name = "NAME", requires = "meshes")]
@@ -245,6 +249,7 @@ pub(crate) enum Up {
 
 #[derive(Debug, Args)]
 #[command(mut_arg("meshes", |meshes| meshes.requires("figure")))]
+#[command(mut_arg("rig", |rig| rig.requires("figure")))]
 pub(crate) struct TrainArguments {
     /// Where to write the model
     #[arg(long, value_name = "FILE")]
@@ -356,6 +361,9 @@ pub(crate) enum BakeCommand {
         /// The body and its poses
         #[command(flatten)]
         body: BodyFiles,
+        /// The figure file, for a rig without controls
+        #[arg(long, value_name = "FILE")]
+        figure: Option<PathBuf>,
         /// Where to write the picture
         #[arg(
             long,

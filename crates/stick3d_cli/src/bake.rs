@@ -8,6 +8,7 @@ use stick3d_train::pose::pose_sheet;
 use crate::args::BakeCommand;
 use crate::corpus::Corpus;
 use crate::failure::{Failure, Outcome};
+use crate::inputs;
 use crate::pictures::write_png;
 
 /// Edge of one picture of the contact sheet, pixels.
@@ -20,8 +21,14 @@ pub(crate) fn run(command: &BakeCommand) -> Outcome {
     match command {
         BakeCommand::Human { wheel, out } => told(out, bake_human(wheel, out)),
         BakeCommand::Horse { wheel, out } => told(out, bake_horse(wheel, out)),
-        BakeCommand::Poses { body, out, yaw_deg } => {
-            let corpus = Corpus::read(body)?;
+        BakeCommand::Poses {
+            body,
+            figure,
+            out,
+            yaw_deg,
+        } => {
+            let figure = figure.as_deref().map(inputs::figure).transpose()?;
+            let corpus = Corpus::read(body, figure.as_ref())?;
             let sheet = pose_sheet(
                 &corpus.rig,
                 &corpus.controls,

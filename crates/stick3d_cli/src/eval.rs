@@ -27,7 +27,9 @@ pub(crate) fn run(arguments: &EvalArguments) -> Outcome {
     let report = match &arguments.set.meshes {
         Some(folder) => mesh_set::measure_folder(&model, folder, &arguments.set, &bar)?,
         None => {
-            let corpus = Corpus::read(&arguments.body)?;
+            let corpus = Corpus::read(&arguments.body, Some(model.figure()))?;
+            // Standard output is the report's.
+            corpus.said.iter().for_each(|line| eprintln!("{line}"));
             if arguments.motion {
                 let report = eval_motion::measure(&model, &corpus, &bar)?;
                 bar.clear();
@@ -58,7 +60,7 @@ pub(crate) fn measure(
     config: &EvalConfig,
     progress: &dyn Progress,
 ) -> Outcome<Report> {
-    let (trained_on, held_out) = corpus.split_of(model);
+    let (trained_on, held_out) = corpus.split_of(model)?;
     let baseline = spread(corpus.poses(&trained_on), BASELINE_POSES);
     let input = EvalInput {
         rig: &corpus.rig,

@@ -21,7 +21,7 @@ const EDGE_STREAM: u64 = 0xed9e;
 
 /// Measures the motions of a model.
 pub(crate) fn measure(model: &Model, corpus: &Corpus, bar: &Bar) -> Outcome<MotionReport> {
-    let (trained_on, held_out) = corpus.split_of(model);
+    let (trained_on, held_out) = corpus.split_of(model)?;
     let named: Vec<(String, Pose)> = held_out
         .poses
         .iter()

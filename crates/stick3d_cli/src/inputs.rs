@@ -4,6 +4,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use anyhow::Context as _;
+use stick3d_figure::figure::Figure;
 use stick3d_figure::interchange::figure_name;
 use stick3d_figure::names::nearest;
 use stick3d_model::Model;
@@ -45,6 +46,12 @@ pub(crate) fn model(path: Option<&Path>) -> Outcome<Model> {
             .map_err(|failure| failure.context(format!("cannot use the model {}", path.display()))),
         None => Model::from_bytes(stick3d_human::MODEL).map_err(Failure::model),
     }
+}
+
+/// The figure of `path`.
+pub(crate) fn figure(path: &Path) -> Outcome<Figure> {
+    Figure::from_ron(&text(path)?)
+        .map_err(|error| Failure::input(error).context(format!("cannot use {}", path.display())))
 }
 
 /// The text of `path`.

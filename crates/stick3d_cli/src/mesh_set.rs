@@ -6,7 +6,8 @@ use std::time::Instant;
 use stick3d_figure::figure::Figure;
 use stick3d_model::Model;
 use stick3d_train::evaluate::{EvalConfig, EvalError, Report, evaluate_meshes};
-use stick3d_train::meshes::{MeshSet, MeshSetOptions, Placement, UpAxis};
+use stick3d_train::meshes::{MeshSet, MeshSetOptions, UpAxis};
+use stick3d_train::placement::Placement;
 use stick3d_train::training::{self, MeshTrainInput, TrainConfig};
 
 use crate::args::{MeshFiles, TrainArguments, Up};

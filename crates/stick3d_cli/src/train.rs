@@ -21,15 +21,14 @@ const QUICK: usize = 10;
 pub(crate) fn run(arguments: &TrainArguments) -> Outcome {
     let start = Instant::now();
     let figure = match &arguments.figure {
-        Some(path) => Figure::from_ron(&inputs::text(path)?).map_err(|error| {
-            Failure::input(error).context(format!("cannot use {}", path.display()))
-        })?,
+        Some(path) => inputs::figure(path)?,
         None => Figure::human().clone(),
     };
     if let Some(folder) = &arguments.set.meshes {
         return mesh_set::train(arguments, folder, &figure);
     }
-    let corpus = Corpus::read(&arguments.body)?;
+    let corpus = Corpus::read(&arguments.body, Some(&figure))?;
+    corpus.said.iter().for_each(|line| println!("{line}"));
     let config = config(arguments, &figure);
     let (trained_on, held_out) = corpus.split(config.seed);
     let streams = |number: u64| corpus.stream(&trained_on, config.seed.rotate_left(32) ^ number);

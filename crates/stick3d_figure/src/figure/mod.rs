@@ -178,6 +178,15 @@ impl Figure {
             .get(bone)
             .map_or(0.0, |&[a, b]| self.template[a].distance(self.template[b]))
     }
+
+    /// The largest distance between two points of the template, metres.
+    pub fn template_extent_m(&self) -> f32 {
+        let pairs = self
+            .template
+            .iter()
+            .flat_map(|a| self.template.iter().map(|b| a.distance(*b)));
+        pairs.fold(0.0, f32::max)
+    }
 }
 
 #[cfg(test)]

@@ -33,6 +33,7 @@ use thiserror::Error;
 use crate::dataset::{PoseStream, Rotations, SketchNoise, centre, drawn, posed, random};
 use crate::meshes::{MeshSet, NamedMesh};
 use crate::rig::{Pose, Rig};
+use crate::size::relative_size;
 use crate::training::Progress;
 
 /// What a measurement is made of.
@@ -102,31 +103,31 @@ pub enum EvalError {
     },
 }
 
-/// The four ways in which every test case is drawn.
-pub const DRAWN: [(&str, SketchNoise); 4] = [
-    ("clean", SketchNoise::CLEAN),
-    (
-        "joints jittered by 2.5 cm",
-        SketchNoise {
-            jitter_m: 0.025,
-            bone_scale: 0.0,
-        },
-    ),
-    (
-        "bones scaled by 15 %",
-        SketchNoise {
-            jitter_m: 0.0,
-            bone_scale: 0.15,
-        },
-    ),
-    (
-        "both",
-        SketchNoise {
-            jitter_m: 0.025,
-            bone_scale: 0.15,
-        },
-    ),
-];
+/// How far joints are jittered on a figure of usual size, metres, and how much bones are scaled.
+const JITTER_M: f32 = 0.025;
+const BONE_SCALE: f32 = 0.15;
+
+/// The four ways in which every test case of a figure is drawn, by name; a small one is jittered less
+/// ([`relative_size`]).
+#[must_use]
+pub fn ways_to_draw(figure: &Figure) -> [(String, SketchNoise); 4] {
+    let jitter_m = JITTER_M * relative_size(figure.template_extent_m());
+    let jittered = format!("joints jittered by {:.1} cm", 100.0 * jitter_m);
+    let scaled = format!("bones scaled by {:.0} %", 100.0 * BONE_SCALE);
+    let way = |name: &str, jitter_m: f32, bone_scale: f32| {
+        let noise = SketchNoise {
+            jitter_m,
+            bone_scale,
+        };
+        (name.to_owned(), noise)
+    };
+    [
+        way("clean", 0.0, 0.0),
+        way(&jittered, jitter_m, 0.0),
+        way(&scaled, 0.0, BONE_SCALE),
+        way("both", jitter_m, BONE_SCALE),
+    ]
+}
 
 /// Measures a model and the baseline.
 ///
@@ -210,6 +211,8 @@ fn measure(
     config: &EvalConfig,
     progress: &dyn Progress,
 ) -> Result<Report, EvalError> {
+    let ways = ways_to_draw(model.figure());
+    let collectors = ways.iter().map(|_| Collectors::default()).collect();
     let mut evaluation = Evaluation {
         figure: model.figure(),
         baseline: Baseline::new(model.figure(), cases.baseline)?,
@@ -217,7 +220,8 @@ fn measure(
         config,
         model,
         rng_step: 0,
-        collectors: DRAWN.iter().map(|_| Collectors::default()).collect(),
+        ways,
+        collectors,
     };
     let library_cases = cases.library * config.turns_per_library_pose;
     progress.begin("measuring", cases.sampled + library_cases);
@@ -254,6 +258,7 @@ struct Evaluation<'a> {
     baseline: Baseline,
     config: &'a EvalConfig,
     rng_step: u64,
+    ways: [(String, SketchNoise); 4],
     collectors: Vec<Collectors>,
 }
 
@@ -268,7 +273,7 @@ impl Evaluation<'_> {
         let joints: Vec<Vec3> = joints.iter().map(|joint| turn * *joint).collect();
         let mut latent = vec![0.0; self.inference.latent_len()];
         let mut positions = vec![[0.0; 3]; truth.len()];
-        for (index, (_, noise)) in DRAWN.iter().enumerate() {
+        for (index, (_, noise)) in self.ways.iter().enumerate() {
             let mut points: Vec<Vec2> = drawn(Quat::IDENTITY, &joints);
             noise.apply(figure, &mut points, &mut rng);
             let sketch = Sketch::new(figure, points)?;
@@ -296,7 +301,7 @@ impl Evaluation<'_> {
     fn report(self, sampled_cases: usize, library_cases: usize) -> Report {
         let extent_m = self.model.metadata().normalisation.extent_m;
         let (mut model, mut baseline) = (vec![], vec![]);
-        for ((name, noise), collectors) in DRAWN.iter().zip(self.collectors) {
+        for ((name, noise), collectors) in self.ways.iter().zip(self.collectors) {
             model.push(Drawn::new(name, *noise, collectors.model, extent_m));
             baseline.push(Drawn::new(name, *noise, collectors.baseline, extent_m));
         }

@@ -20,7 +20,7 @@ use crate::dataset::random;
 use crate::format::{FileMesh, SourceFormat, read_mesh};
 use crate::rig::mean_of;
 pub use error::MeshSetError;
-pub use place::{Placement, UpAxis};
+pub use place::UpAxis;
 
 /// The colour of meshes whose files have none: a light clay, linear.
 const CLAY: [u8; 4] = [168, 158, 146, 255];

@@ -9,6 +9,9 @@ use super::error::{PoseError, hint};
 use super::spec::{ControlsSpec, Half, PartSpec};
 use crate::rig::{Rig, Skeleton};
 
+/// The fewest vertices that a part is fitted to.
+pub(super) const LEAST_VERTICES: usize = 8;
+
 /// Directions in which a part's outermost vertices are looked for.
 const DIRECTIONS: usize = 96;
 
@@ -48,6 +51,7 @@ pub struct Body {
     parts: Vec<Part>,
     /// Pairs to be tested for running into each other.
     tested: Vec<(usize, usize)>,
+    allowed_overlap_m: f32,
 }
 
 impl Body {
@@ -61,6 +65,7 @@ impl Body {
         }
         let mut body = Self {
             tested: Vec::new(),
+            allowed_overlap_m: spec.overlap_m,
             parts,
         };
         let mut exempt = BTreeSet::new();
@@ -148,6 +153,11 @@ impl Body {
         part.segment.map(|end| head + rotation * end)
     }
 
+    /// How deep parts may run into each other, metres.
+    pub fn allowed_overlap_m(&self) -> f32 {
+        self.allowed_overlap_m
+    }
+
     /// All pairs of parts that run deeper than `allowed_m` into each other, where they should not.
     pub fn overlaps(&self, transforms: &[(Quat, Vec3)], allowed_m: f32) -> Vec<Overlap> {
         let segments: Vec<[Vec3; 2]> = (0..self.parts.len())
@@ -185,30 +195,36 @@ fn joined(skeleton: &Skeleton, parts: &[Part], first: usize, second: usize) -> b
     bones.0 == bones.1 || carrier(first) == Some(bones.1) || carrier(second) == Some(bones.0)
 }
 
-fn fit_part(rig: &Rig, spec: &PartSpec, half: Half) -> Result<Part, PoseError> {
-    let bone = rig.skeleton.bone_index(&half.name(&spec.bone))?;
-    let mut bones = vec![bone];
-    for name in &spec.with {
-        bones.push(rig.skeleton.bone_index(&half.name(name))?);
-    }
-    let head = rig.skeleton.bones[bone].head;
+/// The vertices that mostly follow these bones, as offsets from the head of the first.
+pub(super) fn followers(rig: &Rig, bones: &[usize]) -> Vec<Vec3> {
+    let head = bones
+        .first()
+        .map_or(Vec3::ZERO, |bone| rig.skeleton.bones[*bone].head);
     let followed = |list: &[(u16, f32)]| -> f32 {
         list.iter()
             .filter(|(b, _)| bones.contains(&usize::from(*b)))
             .map(|(_, w)| w)
             .sum()
     };
-    let points: Vec<Vec3> = rig
-        .influences
+    rig.influences
         .iter()
         .zip(&rig.mesh.positions)
         .filter(|(list, _)| followed(list) > 0.5)
         .map(|(_, p)| *p - head)
-        .collect();
+        .collect()
+}
+
+fn fit_part(rig: &Rig, spec: &PartSpec, half: Half) -> Result<Part, PoseError> {
+    let bone = rig.skeleton.bone_index(&half.name(&spec.bone))?;
+    let mut bones = vec![bone];
+    for name in &spec.with {
+        bones.push(rig.skeleton.bone_index(&half.name(name))?);
+    }
+    let points = followers(rig, &bones);
     let name = half.name(&spec.name);
-    if points.len() < 8 {
+    if points.len() < LEAST_VERTICES {
         let why = format!(
-            "only {} vertices follow its bones; at least 8 must",
+            "only {} vertices follow its bones; at least {LEAST_VERTICES} must",
             points.len()
         );
         return Err(PoseError::inconsistent(format!("part `{name}`"), why));

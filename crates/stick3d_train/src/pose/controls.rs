@@ -60,6 +60,7 @@ pub(super) struct Swing {
 /// The degrees of freedom of one rig: turns named angles into a [`crate::rig::Pose`].
 #[derive(Debug, Clone)]
 pub struct Controls {
+    rig: String,
     list: Vec<Control>,
     by_name: BTreeMap<String, usize>,
     pub(super) skeleton: Skeleton,
@@ -95,6 +96,7 @@ impl Controls {
     pub fn bind(spec: &ControlsSpec, rig: &Rig) -> Result<Self, PoseError> {
         let skeleton = rig.skeleton.clone();
         let mut controls = Self {
+            rig: spec.rig.clone(),
             neutral: neutral_rotations(&skeleton, spec)?,
             turns: vec![Vec::new(); skeleton.bones.len()],
             list: Vec::new(),
@@ -153,12 +155,11 @@ impl Controls {
                 self.list[index].odd = control.odd;
                 for drive in &control.drives {
                     let bone = self.skeleton.bone_index(&half.name(&drive.bone))?;
-                    let axis = half
-                        .axis(drive.axis, spec.lateral)
-                        .try_normalize()
-                        .ok_or_else(|| {
-                            PoseError::inconsistent(control.name.clone(), "an axis has no length")
-                        })?;
+                    let axis = half.axis(drive.axis, spec.lateral).try_normalize();
+                    let axis = axis.filter(|_| drive.share.is_finite()).ok_or_else(|| {
+                        let why = "an axis has no length, or a share is no number";
+                        PoseError::inconsistent(control.name.clone(), why)
+                    })?;
                     self.turns[bone].push(Turn {
                         control: index,
                         axis,
@@ -205,6 +206,12 @@ impl Controls {
             let why = format!("the ease {ease_deg} is not between {min_deg} and {max_deg}");
             return Err(PoseError::inconsistent(name, why));
         }
+        if !(spread_deg.is_finite() && min_deg.is_finite() && max_deg.is_finite()) {
+            let why = format!(
+                "its spread is {spread_deg} and its limits are {min_deg} and {max_deg}; degrees are expected"
+            );
+            return Err(PoseError::inconsistent(name, why));
+        }
         if self.by_name.insert(name.clone(), index).is_some() {
             return Err(PoseError::inconsistent(
                 name,
@@ -235,6 +242,16 @@ impl Controls {
     /// All controls. [`PoseValues::degrees`] has this order.
     pub fn list(&self) -> &[Control] {
         &self.list
+    }
+
+    /// What the file of controls calls the rig; pose libraries are for the same.
+    pub fn rig(&self) -> &str {
+        &self.rig
+    }
+
+    /// The motions that came with the rig.
+    pub fn clips(&self) -> &[Clip] {
+        &self.clips
     }
 
     /// The limb that control `index` belongs to, of [`Controls::limb_count`]; none: the trunk and what

@@ -44,6 +44,17 @@ pub enum PoseError {
         /// Largest allowed value, degrees.
         max: f32,
     },
+    /// A pose library was written for another rig.
+    #[error(
+        "the pose library is for the rig `{library}`, but the controls are for `{controls}`; give the library of \
+         `{controls}`, or the controls and the rig of `{library}`"
+    )]
+    OtherRig {
+        /// The rig that the library names.
+        library: String,
+        /// The rig that the controls name.
+        controls: String,
+    },
     /// A pose refers to a pose, part or bone that does not exist, or exists twice.
     #[error("{place}: {why}")]
     Inconsistent {

@@ -4,6 +4,7 @@ use glam::{Quat, Vec3};
 use nalgebra::{DMatrix, DVector};
 
 use super::controls::{Controls, PoseValues};
+use super::posing::BoneTransforms;
 use crate::rig::Pose;
 
 /// Rounds of the solver; clips of whole bodies need about ten.
@@ -47,14 +48,19 @@ impl Controls {
         let mut values = start.clone();
         self.clamp(&mut values);
         self.search(&mut values, &evaluate);
-        let lowest_m = self.body().lowest_m(&target);
-        values.lift_m = if lowest_m.is_finite() {
+        values.lift_m = self.lift_m(&target);
+        let squares: f32 = misses(&values).iter().map(|v| v.length_squared()).sum();
+        (values, (squares / steered.len().max(1) as f32).sqrt())
+    }
+
+    /// The height of the body's lowest part, nothing where that is below the ground.
+    pub(super) fn lift_m(&self, transforms: &BoneTransforms) -> f32 {
+        let lowest_m = self.body().lowest_m(transforms);
+        if lowest_m.is_finite() {
             lowest_m.max(0.0)
         } else {
             0.0
-        };
-        let squares: f32 = misses(&values).iter().map(|v| v.length_squared()).sum();
-        (values, (squares / steered.len().max(1) as f32).sqrt())
+        }
     }
 
     /// Damped least squares (Levenberg-Marquardt) inside the limits.

@@ -79,10 +79,16 @@ impl PoseLibrary {
     ///
     /// # Errors
     /// [`PoseError::Syntax`] for a malformed file, [`PoseError::UnknownControl`] with the nearest valid
-    /// name, [`PoseError::OutsideLimits`], or [`PoseError::Inconsistent`] for names of poses and parts.
+    /// name, [`PoseError::OtherRig`], [`PoseError::OutsideLimits`], or [`PoseError::Inconsistent`] for names of poses and parts.
     pub fn from_ron(text: &str, controls: &Controls) -> Result<Self, PoseError> {
         let spec: LibrarySpec =
             ron::from_str(text).map_err(|error| PoseError::syntax("the pose library", &error))?;
+        if spec.rig != controls.rig() {
+            return Err(PoseError::OtherRig {
+                library: spec.rig,
+                controls: controls.rig().to_owned(),
+            });
+        }
         let mut library = Self::default();
         for pose in &spec.poses {
             let pose = library.read_pose(pose, controls)?;
@@ -123,6 +129,10 @@ impl PoseLibrary {
             }
         } else {
             values.lift_m = 0.0;
+        }
+        if !spec.lift_m.is_finite() {
+            let why = format!("lift_m is {}; metres are expected", spec.lift_m);
+            return Err(PoseError::inconsistent(place, why));
         }
         values.lift_m += spec.lift_m;
         // Both sides first, so that a single side can differ from them.

@@ -7,7 +7,9 @@
 
 mod align;
 mod body;
+mod clip_poses;
 mod controls;
+mod default_controls;
 mod error;
 mod fit;
 mod goals;
@@ -17,9 +19,11 @@ mod sampler;
 mod sheet;
 mod shipped;
 mod spec;
+mod unfold;
 
 pub use body::{Body, Overlap, Part};
 pub use controls::{Control, Controls, PoseValues};
+pub use default_controls::default_controls;
 pub use error::PoseError;
 pub use goals::Goal;
 pub use library::{NamedPose, PoseLibrary};

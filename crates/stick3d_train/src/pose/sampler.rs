@@ -7,8 +7,6 @@ use super::controls::{Controls, PoseValues};
 use super::library::PoseLibrary;
 use crate::rig::{Pose, Rig};
 
-/// How deep parts may run into each other: flesh gives way.
-const ALLOWED_OVERLAP_M: f32 = 0.02;
 /// Attempts at one pose before falling back to a known good one.
 const ATTEMPTS: usize = 40;
 /// Which poses a [`PoseSampler`] draws.
@@ -73,10 +71,9 @@ impl<'a> PoseSampler<'a> {
                 values = self.controls.mirror(&values);
             }
             let transforms = self.controls.transforms(&self.controls.rotations(&values));
-            if self
-                .controls
-                .body()
-                .overlaps(&transforms, ALLOWED_OVERLAP_M)
+            let body = self.controls.body();
+            if body
+                .overlaps(&transforms, body.allowed_overlap_m())
                 .is_empty()
             {
                 return values;

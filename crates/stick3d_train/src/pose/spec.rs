@@ -34,6 +34,9 @@ pub struct ControlsSpec {
     pub parts: Vec<PartSpec>,
     /// Pairs of parts that may overlap, because flesh gives way there or they are joined.
     pub may_overlap: Vec<(String, String)>,
+    /// How deep the other pairs may run into each other, metres: flesh gives way.
+    #[serde(default = "usual_overlap_m")]
+    pub overlap_m: f32,
 }
 
 /// Which axis of model space goes from side to side; the body is symmetric about the plane across it.
@@ -144,6 +147,11 @@ pub struct DriveSpec {
     /// Degrees of the bone per degree of the control.
     #[serde(default = "one")]
     pub share: f32,
+}
+
+/// How deep parts of bodies as large as people may run into each other, metres.
+pub(crate) fn usual_overlap_m() -> f32 {
+    0.02
 }
 
 fn one() -> f32 {

@@ -17,6 +17,7 @@ mod hang;
 mod joints;
 mod nodes;
 mod open;
+mod place;
 mod read;
 mod regressor;
 mod report;

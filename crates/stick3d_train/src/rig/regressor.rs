@@ -9,16 +9,23 @@ use glam::{DVec3, Quat, Vec3};
 use nalgebra::{DMatrix, DVector};
 use stick3d_figure::{Anchor, Figure, JointRegressor};
 
-use super::{Pose, Rig, RigError};
+use super::{Bone, Pose, Rig, RigError};
+use crate::size::relative_size;
 
 /// Degrees that the fit bends a joint by, about each model axis.
 const BENDS_DEG: [f32; 4] = [-90.0, -45.0, 45.0, 90.0];
 
-/// Weight of "near a plain average" against "near the bone's head", in square metres.
+/// Weight of "near a plain average" against "near the bone's head", in square metres, on a body of usual size.
 const RIDGE_M2: f64 = 0.005;
 
 /// A vertex belongs to a joint's ring when the bones below and above the joint both hold this share of it.
 const RING_SHARE: f32 = 0.15;
+
+/// The fewest vertices that a joint is the mean of, where it is on a bone.
+const LEAST_RING: usize = 4;
+
+/// How many of the nearest vertices stand in where there is neither ring nor slab.
+const NEAREST: usize = 12;
 
 /// Half height of the slab that stands in for a ring where a bone has no moving parent, in bone lengths.
 const SLAB: f32 = 0.5;
@@ -72,10 +79,10 @@ fn fit(bones: &[usize], rig: &Rig) -> Result<Vec<(u32, f32)>, String> {
     for &bone in bones {
         let ring = ring(bone, rig);
         let total: f64 = ring.iter().map(|&(_, share)| share).sum();
-        if ring.len() < 4 || total <= 0.0 {
+        if ring.len() < LEAST_RING || total <= 0.0 {
             let name = &rig.skeleton.bones[bone].name;
             return Err(format!(
-                "fewer than four vertices surround the head of bone `{name}`"
+                "fewer than {LEAST_RING} vertices surround the head of bone `{name}`"
             ));
         }
         for (vertex, share) in ring {
@@ -111,11 +118,33 @@ fn ring(bone: usize, rig: &Rig) -> Vec<(u32, f64)> {
         .filter(|&(_, share)| share > RING_SHARE)
         .map(|(vertex, share)| (vertex, f64::from(share)))
         .collect();
-    if seam.is_empty() {
-        slab(bone, rig)
-    } else {
-        seam
+    if seam.len() >= LEAST_RING {
+        return seam;
     }
+    // Low-poly meshes may have no vertex where the weights change.
+    let slab = slab(bone, rig);
+    if slab.len() >= LEAST_RING {
+        slab
+    } else {
+        nearest(bone, rig)
+    }
+}
+
+/// The vertices nearest to a bone's head, of those that follow it or the bone above.
+fn nearest(bone: usize, rig: &Rig) -> Vec<(u32, f64)> {
+    let Bone { head, parent, .. } = rig.skeleton.bones[bone];
+    let follows = |list: &[(u16, f32)]| {
+        let near = |b: u16| usize::from(b) == bone || Some(usize::from(b)) == parent;
+        list.iter().any(|&(b, weight)| near(b) && weight > 0.3)
+    };
+    let mut near: Vec<(f32, u32)> = (0u32..)
+        .zip(&rig.influences)
+        .filter(|(_, list)| follows(list))
+        .map(|(vertex, _)| (rig.mesh.positions[vertex as usize].distance(head), vertex))
+        .collect();
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    near.truncate(NEAREST);
+    near.into_iter().map(|(_, vertex)| (vertex, 1.0)).collect()
 }
 
 /// A slice of the vertices that mostly follow `bone`, across its head.
@@ -144,11 +173,14 @@ fn slab(bone: usize, rig: &Rig) -> Vec<(u32, f64)> {
 /// sum 1 and the exact place at rest (Lagrange multipliers).
 fn solve(ring: &[u32], plain: &[f64], bones: &[usize], rig: &Rig) -> Option<Vec<f64>> {
     let size = ring.len();
+    let (low, high) = rig.mesh.bounds();
+    let relative = f64::from(relative_size((high - low).max_element()));
+    let ridge_m2 = RIDGE_M2 * relative * relative;
     let mut matrix = DMatrix::<f64>::zeros(size + 4, size + 4);
     let mut right = DVector::<f64>::zeros(size + 4);
     for (row, share) in plain.iter().enumerate() {
-        matrix[(row, row)] = RIDGE_M2;
-        right[row] = RIDGE_M2 * share;
+        matrix[(row, row)] = ridge_m2;
+        right[row] = ridge_m2 * share;
     }
     let bent = bent_offsets(ring, bones, rig);
     let per_pose = 1.0 / bent.len().max(1) as f64;

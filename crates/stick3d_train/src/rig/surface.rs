@@ -82,6 +82,13 @@ impl Surface {
         };
         let mut mirrored = false;
         for (vertex, (point, list)) in points.iter().zip(&lists).enumerate() {
+            if !point.is_finite() || list.iter().any(|(_, weight)| !weight.is_finite()) {
+                return Err(RigError::Inconsistent {
+                    what: format!(
+                        "{place}: vertex {vertex} has a position or weights that are no numbers"
+                    ),
+                });
+            }
             let placed = match carrier {
                 Carrier::Skin(joints) => blended(*point, list, joints),
                 Carrier::Joint(joint, matrix) => Some((
@@ -163,7 +170,7 @@ fn read_influences(
             list.extend(
                 four.into_iter()
                     .zip(shares)
-                    .filter(|&(_, share)| share > 0.0),
+                    .filter(|&(_, share)| share > 0.0 || share.is_nan()),
             );
         }
     }

@@ -7,6 +7,7 @@ use stick3d_model::architecture::LATENT_LEN;
 
 use super::{StageName, TrainError};
 use crate::dataset::{Augmentation, BasisConfig, Rotations};
+use crate::size::relative_size;
 
 /// Everything that decides what a run yields, beside the rig and the poses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -85,9 +86,12 @@ pub struct LossWeights {
 }
 
 impl TrainConfig {
-    /// The recipe of the shipped models, with the views of `figure`.
+    /// The recipe of the shipped models, with the views of `figure`; lengths in it go with the size of its template
+    /// ([`relative_size`]), so that a fox of half a metre is learnt as a horse is.
     #[must_use]
     pub fn of(figure: &Figure) -> Self {
+        let size = relative_size(figure.template_extent_m());
+        let per_length = 1.0 / f64::from(size);
         Self {
             seed: 1,
             hidden: HiddenLayers {
@@ -106,7 +110,7 @@ impl TrainConfig {
             rotations: Rotations::of(&figure.views),
             augmentation: Augmentation {
                 clean_share: 0.5,
-                jitter_m: 0.04,
+                jitter_m: 0.04 * size,
                 bone_scale: 0.2,
             },
             batch_size: 256,
@@ -129,9 +133,9 @@ impl TrainConfig {
                 code: 0.01,
                 autoencoder: 0.02,
                 latent: 1.0,
-                vertices: 1.0,
-                joints: 0.5,
-                reprojection: 1.0,
+                vertices: per_length,
+                joints: 0.5 * per_length,
+                reprojection: per_length,
                 bones: 0.2,
                 probes: 300,
             },
