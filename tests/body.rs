@@ -11,7 +11,7 @@ use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
 use bevy_stick3d::StreamedBody;
 use bevy_stick3d::prelude::*;
-use support::{app, bounds, cheer, joint, normals, positions, status, t_pose};
+use support::{app, bounds, cheer, joint, modified_meshes, normals, positions, status, t_pose};
 
 #[test]
 fn a_sketch_is_a_body_in_the_same_frame() {
@@ -103,15 +103,6 @@ fn grounding_can_be_turned_off() {
     app.update();
     let (low, _) = bounds(&positions(&app, man).unwrap());
     assert!(low.y.abs() < 1.0e-5);
-}
-
-/// Which meshes were written since the last look.
-fn modified_meshes(app: &mut App) -> usize {
-    app.world_mut()
-        .resource_mut::<Messages<AssetEvent<Mesh>>>()
-        .drain()
-        .filter(|event| matches!(event, AssetEvent::Modified { .. }))
-        .count()
 }
 
 #[test]

@@ -156,7 +156,8 @@ impl AnimationCurve for LatentCurve {
                 let id = TypeId::of::<LatentCurveEvaluator>();
                 AnimationEvaluationError::InconsistentEvaluatorImplementation(id)
             })?;
-        evaluator.push(self, graph_node, weight, |latent| {
+        let latent_len = self.motion.path().latent_len();
+        evaluator.push(self, graph_node, weight, latent_len, |latent| {
             self.motion.sample_into(self.motion_s(t), latent)
         });
         Ok(())

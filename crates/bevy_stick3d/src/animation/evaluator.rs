@@ -67,9 +67,9 @@ impl LatentCurveEvaluator {
         curve: &LatentCurve,
         node: AnimationNodeIndex,
         weight: f32,
+        latent_len: usize,
         write: impl FnOnce(&mut [f32]) -> Result<(), PathError>,
     ) {
-        let latent_len = curve.motion().path().latent_len();
         let start = self.latents.len();
         self.latents.resize(start + latent_len, 0.0);
         if let Err(error) = write(&mut self.latents[start..]) {
@@ -191,5 +191,86 @@ impl AnimationCurveEvaluator for LatentCurveEvaluator {
         self.shares.clear();
         self.stack.clear();
         Ok(())
+    }
+}
+
+#[cfg(all(test, feature = "human"))]
+mod tests {
+    use stick3d_model::latent::{Easing, MotionSettings};
+    use stick3d_model::{Inference, LatentKey, Motion};
+
+    use super::*;
+    use crate::embedded::EMBEDDED_MODELS;
+
+    fn curve() -> LatentCurve {
+        let model = EMBEDDED_MODELS[0].model().unwrap();
+        let mut inference = Inference::new(model.model()).unwrap();
+        let keys = [0.0, 1.0].map(|time_s| LatentKey {
+            latent: vec![0.1 * time_s; inference.latent_len()],
+            time_s,
+            easing: Easing::Linear,
+        });
+        LatentCurve::new(Motion::new(&keys, MotionSettings::default(), &mut inference).unwrap())
+    }
+
+    /// Pushes a latent of equal numbers.
+    fn push(evaluator: &mut LatentCurveEvaluator, node: u32, weight: f32, latent: &[f32]) {
+        let node = AnimationNodeIndex::new(node as usize);
+        evaluator.push(&curve(), node, weight, latent.len(), |out| {
+            out.copy_from_slice(latent);
+            Ok(())
+        });
+    }
+
+    /// Blends or adds nodes 1 and 2, as Bevy does, into node 0.
+    fn combine(evaluator: &mut LatentCurveEvaluator, additive: bool) {
+        for node in [2, 1] {
+            let node = AnimationNodeIndex::new(node);
+            if additive {
+                evaluator.add(node).unwrap();
+            } else {
+                evaluator.blend(node).unwrap();
+            }
+        }
+        let root = AnimationNodeIndex::new(0);
+        evaluator.push_blend_register(1.0, root).unwrap();
+    }
+
+    #[test]
+    fn blends_weigh_latents_and_shares_alike() {
+        let mut evaluator = LatentCurveEvaluator::default();
+        push(&mut evaluator, 1, 3.0, &[8.0, 4.0]);
+        push(&mut evaluator, 2, 1.0, &[0.0, 8.0]);
+        combine(&mut evaluator, false);
+        assert_eq!(evaluator.latents, [6.0, 5.0]);
+        let shares: Vec<f32> = evaluator.shares.iter().map(|share| share.share).collect();
+        assert_eq!(shares, [0.25, 0.75]);
+        assert_eq!(evaluator.stack.len(), 1);
+
+        let mut evaluator = LatentCurveEvaluator::default();
+        push(&mut evaluator, 1, 0.5, &[8.0]);
+        push(&mut evaluator, 2, 1.0, &[1.0]);
+        combine(&mut evaluator, true);
+        assert_eq!(evaluator.latents, [5.0]);
+    }
+
+    #[test]
+    fn weights_of_nothing_make_no_nan() {
+        let mut evaluator = LatentCurveEvaluator::default();
+        push(&mut evaluator, 1, 0.0, &[8.0]);
+        push(&mut evaluator, 2, 0.0, &[2.0]);
+        combine(&mut evaluator, false);
+        assert_eq!(evaluator.latents, [2.0]);
+    }
+
+    #[test]
+    fn latents_of_different_lengths_are_an_error() {
+        let mut evaluator = LatentCurveEvaluator::default();
+        push(&mut evaluator, 1, 1.0, &[8.0, 4.0]);
+        push(&mut evaluator, 2, 1.0, &[0.0]);
+        combine(&mut evaluator, false);
+        let error = evaluator.error.unwrap().to_string();
+        assert!(error.contains("of 1 and of 2 numbers"), "{error}");
+        assert_eq!(evaluator.latents, [0.0], "nothing is left over");
     }
 }
