@@ -169,7 +169,7 @@ impl Entry {
         };
         self.generation = ready.generation;
         let curve = match clip.motion(&mut ready.inference) {
-            Ok(motion) => LatentCurve::new(motion),
+            Ok(motion) => LatentCurve::new(motion).for_model(&self.model),
             Err(error) => {
                 let message = format!("{}: {error}", name_of(&self.clip));
                 self.problem = Some(message.clone());

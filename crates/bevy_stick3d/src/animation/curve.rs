@@ -12,6 +12,7 @@ use stick3d_model::latent::{Extrapolation, PathError, Repeat};
 
 use super::evaluator::LatentCurveEvaluator;
 use crate::figure::Latent;
+use crate::model_asset::StickModel;
 
 /// What the clips of this plugin animate: the figure itself. The same for every figure, so that any clip may be played by any
 /// figure of its model.
@@ -29,6 +30,7 @@ pub const STICK_TARGET: AnimationTargetId =
 pub struct LatentCurve {
     motion: Arc<Motion>,
     duration_s: f32,
+    model: Option<AssetId<StickModel>>,
 }
 
 impl LatentCurve {
@@ -38,7 +40,20 @@ impl LatentCurve {
         Self {
             duration_s: duration_s(&motion),
             motion,
+            model: None,
         }
+    }
+
+    /// Says whose latents these are, so that figures of other models refuse them: they would be no body there.
+    #[must_use]
+    pub fn for_model(mut self, model: impl Into<AssetId<StickModel>>) -> Self {
+        self.model = Some(model.into());
+        self
+    }
+
+    /// Whose latents these are, as far as it was said.
+    pub fn model(&self) -> Option<AssetId<StickModel>> {
+        self.model
     }
 
     /// The motion.
@@ -166,5 +181,69 @@ impl AnimationCurve for LatentCurve {
     /// A boxed [`Latent`]; empty for a time that is none.
     fn sample_clamped(&self, t: f32) -> Box<dyn Any> {
         Box::new(Latent(self.latent(t).unwrap_or_default()))
+    }
+}
+
+#[cfg(all(test, feature = "human"))]
+mod tests {
+    use stick3d_model::latent::{Easing, MotionSettings};
+    use stick3d_model::{Inference, LatentKey};
+
+    use super::*;
+    use crate::embedded::EMBEDDED_MODELS;
+
+    /// Three keys, a second apart, from 2 s on.
+    fn curve(repeat: Repeat, extrapolation: Extrapolation) -> LatentCurve {
+        let model = EMBEDDED_MODELS[0].model().unwrap();
+        let mut inference = Inference::new(model.model()).unwrap();
+        let keys = [2.0, 3.0, 4.0].map(|time_s| LatentKey {
+            latent: vec![0.01 * time_s; inference.latent_len()],
+            time_s,
+            easing: Easing::Linear,
+        });
+        let settings = MotionSettings {
+            repeat,
+            extrapolation,
+            ..MotionSettings::default()
+        };
+        LatentCurve::new(Motion::new(&keys, settings, &mut inference).unwrap())
+    }
+
+    #[test]
+    fn a_clip_begins_at_its_first_key_and_lasts_one_round() {
+        let loop_ = Repeat::Loop {
+            closing_s: Some(0.5),
+        };
+        let turning = Extrapolation::PingPong { least_trust: 0.5 };
+        for (repeat, extrapolation, duration_s, mode) in [
+            (Repeat::Once, Extrapolation::Hold, 2.0, RepeatAnimation::Never),
+            (loop_, Extrapolation::Hold, 2.5, RepeatAnimation::Forever),
+            (Repeat::PingPong, Extrapolation::Hold, 4.0, RepeatAnimation::Forever),
+            (
+                Repeat::Once,
+                Extrapolation::Unbounded,
+                f32::INFINITY,
+                RepeatAnimation::Never,
+            ),
+        ] {
+            let curve = curve(repeat, extrapolation);
+            assert_eq!(curve.duration_s(), duration_s, "{repeat:?}");
+            assert_eq!(curve.repeat_animation(), mode);
+            assert_eq!(curve.latent(0.0).unwrap()[0], 0.02);
+            assert_eq!(curve.latent(1.0).unwrap()[0], 0.03);
+            assert_eq!(curve.domain().end(), duration_s);
+            assert_eq!(curve.into_clip().duration(), duration_s);
+        }
+        let turning = curve(Repeat::Once, turning);
+        assert_eq!(turning.repeat_animation(), RepeatAnimation::Forever);
+        let ends = [0.0, turning.duration_s()].map(|clip_s| turning.latent(clip_s).unwrap()[0]);
+        assert!((ends[0] - ends[1]).abs() < 1e-5, "{ends:?}");
+    }
+
+    #[test]
+    fn what_has_no_end_goes_on() {
+        let curve = curve(Repeat::Once, Extrapolation::Unbounded);
+        assert!((curve.latent(10.0).unwrap()[0] - 0.12).abs() < 1e-6);
+        assert!(curve.latent(f32::NAN).is_err());
     }
 }

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::curve::LatentCurve;
 use super::root_motion::{ClipPlayback, ClipShare};
-use crate::figure::Latent;
+use crate::figure::{Latent, StickFigure};
 
 /// Why a playing clip could not move its figure. The figure keeps the pose that it had.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -25,6 +25,9 @@ pub enum PlayError {
         /// Numbers in the other.
         other: usize,
     },
+    /// A clip is of another model than the figure.
+    #[error("a clip is of another model than the figure; make it for the figure's own")]
+    OtherModel,
     /// A clip has no pose at the player's time.
     #[error("a clip has no pose: {0}")]
     Path(#[from] PathError),
@@ -168,8 +171,14 @@ impl AnimationCurveEvaluator for LatentCurveEvaluator {
 
     /// Writes the [`Latent`], which counts as changed only if it is another than before.
     fn commit(&mut self, mut entity: AnimationEntityMut) -> Result<(), AnimationEvaluationError> {
-        let error = self.error.take();
+        let mut error = self.error.take();
         let top = self.stack.pop();
+        if let Some(StickFigure(model)) = entity.get() {
+            let is_other = |share: &ClipShare| share.curve.model().is_some_and(|m| m != model.id());
+            if self.shares.iter().any(is_other) {
+                error = Some(PlayError::OtherModel);
+            }
+        }
         if let (None, Some(top)) = (&error, &top) {
             let numbers = &self.latents[self.latents.len() - top.latent_len..];
             let mut latent = entity.get_mut::<Latent>().ok_or_else(|| {

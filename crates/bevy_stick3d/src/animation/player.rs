@@ -113,6 +113,10 @@ pub(super) fn start_clips(
     for (entity, play, figure, mut started, mut player, mut latent) in &mut figures {
         let entry = clips.entry(&play.0, &figure.0, &animations);
         let Some((curve, version)) = entry.curve() else {
+            // What is left of another model's clip would be no body of this one.
+            if let Some(before) = started.started.take_if(|before| before.model != figure.0.id()) {
+                player.stop(before.node);
+            }
             continue;
         };
         let repeat = curve.repeat_animation();
