@@ -216,9 +216,19 @@ mod tests {
         };
         let turning = Extrapolation::PingPong { least_trust: 0.5 };
         for (repeat, extrapolation, duration_s, mode) in [
-            (Repeat::Once, Extrapolation::Hold, 2.0, RepeatAnimation::Never),
+            (
+                Repeat::Once,
+                Extrapolation::Hold,
+                2.0,
+                RepeatAnimation::Never,
+            ),
             (loop_, Extrapolation::Hold, 2.5, RepeatAnimation::Forever),
-            (Repeat::PingPong, Extrapolation::Hold, 4.0, RepeatAnimation::Forever),
+            (
+                Repeat::PingPong,
+                Extrapolation::Hold,
+                4.0,
+                RepeatAnimation::Forever,
+            ),
             (
                 Repeat::Once,
                 Extrapolation::Unbounded,

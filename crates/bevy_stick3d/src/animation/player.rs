@@ -114,8 +114,12 @@ pub(super) fn start_clips(
         let entry = clips.entry(&play.0, &figure.0, &animations);
         let Some((curve, version)) = entry.curve() else {
             // What is left of another model's clip would be no body of this one.
-            if let Some(before) = started.started.take_if(|before| before.model != figure.0.id()) {
+            let foreign = started
+                .started
+                .filter(|before| before.model != figure.0.id());
+            if let Some(before) = foreign {
                 player.stop(before.node);
+                started.started = None;
             }
             continue;
         };
@@ -166,11 +170,11 @@ pub(super) fn stop_clips(
     }
 }
 
-/// Figures whose clips cannot move them say so, and say so no longer when they can.
+/// Figures whose clips cannot move them say so, and say so no longer when they can; those whose clip is not there yet wait.
 pub(super) fn tell_status(
     mut figures: Query<(
         &StickFigure,
-        Option<&PlayStickClip>,
+        Option<(&PlayStickClip, &StartedClip)>,
         &StreamedBody,
         &mut ClipPlayback,
         &mut FigureStatus,
@@ -180,28 +184,27 @@ pub(super) fn tell_status(
 ) {
     for (figure, play, body, mut playback, mut status) in &mut figures {
         let of_clip = || {
-            let clip = &play?.0;
+            let clip = &play?.0.0;
             let unbuilt = clips.curve(clip, &figure.0).is_none();
             // A file that failed before anybody asked for it is known to the status alone.
             let of_file = || assets.problem(clip).filter(|_| unbuilt);
             clips.problem(clip, &figure.0).or_else(of_file)
         };
-        let problem = playback
-            .error()
-            .map(ToString::to_string)
-            .or_else(|| of_clip().map(str::to_owned));
-        match problem {
-            Some(problem) => {
-                status.set_if_neq(FigureStatus::Failed(problem));
-                playback.bypass_change_detection().told = true;
-            }
-            None if playback.told => {
-                playback.bypass_change_detection().told = false;
-                if !body.has_failed() && status.problem().is_some() {
-                    *status = FigureStatus::Ready;
-                }
-            }
-            None => {}
+        let of_playback = playback.error().map(ToString::to_string);
+        let problem = of_playback.or_else(|| of_clip().map(str::to_owned));
+        let told = &mut playback.bypass_change_detection().told;
+        if let Some(problem) = problem {
+            status.set_if_neq(FigureStatus::Failed(problem));
+            *told = true;
+            continue;
+        }
+        let recovers = std::mem::take(told) && !body.has_failed();
+        if recovers && status.problem().is_some() {
+            *status = FigureStatus::Ready;
+        }
+        let waits = play.is_some_and(|(_, started)| started.started.is_none());
+        if waits && *status == FigureStatus::Ready {
+            *status = FigureStatus::Waiting;
         }
     }
 }
