@@ -8,6 +8,8 @@ use bevy::prelude::*;
 
 use super::clip_asset::StickClip;
 use super::curve::LatentCurve;
+use super::player::PlayStickClip;
+use crate::figure::StickFigure;
 use crate::inference::StickInference;
 use crate::model_asset::StickModel;
 use crate::status::Stick3dStatus;
@@ -217,10 +219,15 @@ fn name_of(clip: &Handle<StickClip>) -> String {
 pub(super) fn note_changed_clips(
     mut changes: MessageReader<AssetEvent<StickClip>>,
     mut failures: MessageReader<AssetLoadFailedEvent<StickClip>>,
+    figures: Query<(&PlayStickClip, &StickFigure)>,
     mut clips: ResMut<StickClips>,
     mut status: ResMut<Stick3dStatus>,
 ) {
-    clips.entries.retain(|_, entry| !entry.is_unused());
+    clips.entries.retain(|key, entry| {
+        let asks =
+            |(play, figure): (&PlayStickClip, &StickFigure)| (play.0.id(), figure.0.id()) == *key;
+        !entry.is_unused() || figures.iter().any(asks)
+    });
     for change in changes.read() {
         let AssetEvent::Modified { id } = change else {
             continue;

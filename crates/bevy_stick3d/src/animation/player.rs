@@ -83,10 +83,7 @@ pub(super) fn link_players(
 
 /// The clips of figures that play one are in use.
 pub(super) fn request_clips(
-    figures: Query<
-        (&PlayStickClip, &StickFigure),
-        Or<(Changed<PlayStickClip>, Changed<StickFigure>)>,
-    >,
+    figures: Query<(&PlayStickClip, &StickFigure)>,
     mut clips: ResMut<StickClips>,
     animations: Res<Assets<AnimationClip>>,
 ) {
