@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     let result = launch.run(|app| {
         app.add_plugins(Stick3dPlugin)
             .add_systems(Startup, (scene::build, spawn_figures, spawn_camera))
-            .add_systems(Update, pause_on_space);
+            .add_systems(Update, pictures::pause_on_space);
     });
     pictures::ended("animate", result)
 }
@@ -74,16 +74,6 @@ fn spawn_figures(mut commands: Commands, mut clips: ResMut<Assets<StickClip>>) -
         commands.spawn((StickFigure::human(), sketch, place));
     }
     Ok(())
-}
-
-fn pause_on_space(keys: Res<ButtonInput<KeyCode>>, mut time: ResMut<Time<Virtual>>) {
-    if keys.just_pressed(KeyCode::Space) {
-        if time.is_paused() {
-            time.unpause();
-        } else {
-            time.pause();
-        }
-    }
 }
 
 fn spawn_camera(mut commands: Commands) {

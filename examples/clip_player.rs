@@ -1,10 +1,10 @@
-//! Clips from files: a man who goes over from a walk to a run and back, two clips that a graph blends; and a galloping horse.
+//! Clips from files: a man who goes over from a walk to a run and back, two clips that a graph blends; or a galloping horse.
 //!
 //! `cargo run --release --example clip_player`
 //! `cargo run --release --example clip_player -- --figure horse`
 //! `cargo run --release --example clip_player -- --screenshot frames --frames 12 --every 8`
 //!
-//! Up and down: faster and slower. Space pauses.
+//! Up and down: more and less of the run. Space pauses.
 
 mod pictures;
 mod scene;
@@ -12,8 +12,8 @@ mod scene;
 use std::process::ExitCode;
 
 use bevy::prelude::*;
+use bevy_stick3d::HUMAN_MODEL;
 use bevy_stick3d::prelude::*;
-use bevy_stick3d::{HORSE_MODEL, HUMAN_MODEL};
 use clap::{Parser, ValueEnum};
 use pictures::Pictures;
 
@@ -23,7 +23,7 @@ struct Arguments {
     /// Who moves.
     #[arg(long, value_enum, default_value = "human")]
     figure: Who,
-    /// How much of the faster clip is in the blend at first, 0 to 1; it comes and goes by itself if not given.
+    /// How much of the run is in the man's blend, 0 to 1; it comes and goes by itself if not given.
     #[arg(long, value_name = "SHARE", value_parser = parse_share)]
     blend: Option<f32>,
     #[command(flatten)]
@@ -46,10 +46,9 @@ fn parse_share(text: &str) -> Result<f32, String> {
 /// Two clips in one graph, and how they are mixed.
 #[derive(Resource)]
 struct Gaits {
-    model: Handle<StickModel>,
-    slow: Gait,
-    fast: Gait,
-    /// How much of the fast one there is; changes by itself if `None`.
+    walk: Gait,
+    run: Gait,
+    /// How much of the run there is; changes by itself if `None`.
     blend: Option<f32>,
 }
 
@@ -64,70 +63,65 @@ fn main() -> ExitCode {
         blend,
         pictures,
     } = Arguments::parse();
-    let (model, slow, fast) = match figure {
-        Who::Human => (HUMAN_MODEL, "clips/walk.clip.ron", "clips/run.clip.ron"),
-        Who::Horse => (
-            HORSE_MODEL,
-            "clips/horse_walk.clip.ron",
-            "clips/horse_gallop.clip.ron",
-        ),
-    };
-    let result = pictures.launch("two clips, blended").run(|app| {
-        let spawn = move |commands: Commands,
-                          assets: Res<AssetServer>,
-                          clips: ResMut<StickClips>,
-                          animations: Res<Assets<AnimationClip>>,
-                          graphs: ResMut<Assets<AnimationGraph>>| {
-            let files = [slow, fast].map(|file| assets.load(file));
-            spawn_figure(commands, clips, animations, graphs, &model, files, blend);
-        };
+    let result = pictures.launch("clips").run(|app| {
         app.add_plugins(Stick3dPlugin)
-            .add_systems(Startup, (scene::build, spawn, spawn_camera))
-            .add_systems(Update, (pause_on_space, mix).chain())
+            .add_systems(Startup, (scene::build, spawn_camera))
+            .add_systems(Update, pictures::pause_on_space)
             .add_systems(
                 PostUpdate,
                 follow
                     .after(Stick3dSystems::Animate)
                     .before(TransformSystems::Propagate),
             );
+        match figure {
+            Who::Horse => app.add_systems(Startup, spawn_horse),
+            Who::Human => app
+                .insert_resource(Blend(blend))
+                .add_systems(Startup, spawn_man)
+                .add_systems(Update, (set_blend, mix).chain()),
+        };
     });
     pictures::ended("clip_player", result)
 }
 
-fn spawn_figure(
+/// One clip: nothing else is needed.
+fn spawn_horse(mut commands: Commands, assets: Res<AssetServer>) {
+    let gallop = assets.load("clips/horse_gallop.clip.ron");
+    commands.spawn((StickFigure::horse(), PlayStickClip(gallop)));
+}
+
+/// What was asked for on the command line.
+#[derive(Resource, Clone, Copy)]
+struct Blend(Option<f32>);
+
+/// Two clips that a graph blends.
+fn spawn_man(
     mut commands: Commands,
-    mut clips: ResMut<StickClips>,
+    assets: Res<AssetServer>,
     animations: Res<Assets<AnimationClip>>,
+    mut clips: ResMut<StickClips>,
     mut graphs: ResMut<Assets<AnimationGraph>>,
-    model: &Handle<StickModel>,
-    files: [Handle<StickClip>; 2],
-    blend: Option<f32>,
+    blend: Res<Blend>,
 ) {
-    let [slow, fast] = files;
+    let files = ["clips/walk.clip.ron", "clips/run.clip.ron"];
+    let [walk, run] = files.map(|file| assets.load(file));
     // The clips are empty until their files are loaded; the graph can be made at once.
-    let handles = [&slow, &fast].map(|clip| clips.animation(clip, model, &animations));
-    let mut graph = AnimationGraph::new();
-    let root = graph.root;
-    let [slow_node, fast_node] = handles.map(|handle| graph.add_clip(handle, 1.0, root));
+    let handles = [&walk, &run].map(|clip| clips.animation(clip, &HUMAN_MODEL, &animations));
+    let (graph, nodes) = AnimationGraph::from_clips(handles);
     let mut player = AnimationPlayer::default();
-    player.play(slow_node).repeat();
-    player.play(fast_node).repeat();
+    for node in &nodes {
+        player.play(*node).repeat();
+    }
     commands.spawn((
-        StickFigure(model.clone()),
+        StickFigure::human(),
         player,
         AnimationGraphHandle(graphs.add(graph)),
     ));
+    let [walk, run] = [(walk, nodes[0]), (run, nodes[1])].map(|(clip, node)| Gait { clip, node });
     commands.insert_resource(Gaits {
-        model: model.clone(),
-        slow: Gait {
-            clip: slow,
-            node: slow_node,
-        },
-        fast: Gait {
-            clip: fast,
-            node: fast_node,
-        },
-        blend,
+        walk,
+        run,
+        blend: blend.0,
     });
 }
 
@@ -138,19 +132,19 @@ fn mix(
     clips: Res<StickClips>,
     time: Res<Time>,
 ) {
-    let Gaits {
-        model, slow, fast, ..
-    } = &*gaits;
-    let of = |gait: &Gait| clips.curve(&gait.clip, model);
-    let (Some(slow_curve), Some(fast_curve)) = (of(slow), of(fast)) else {
+    let of = |gait: &Gait| clips.curve(&gait.clip, &HUMAN_MODEL);
+    let (Some(walk), Some(run)) = (of(&gaits.walk), of(&gaits.run)) else {
         return;
     };
     let to_and_fro = 0.5 - 0.5 * (0.5 * time.elapsed_secs()).cos();
     let share = gaits.blend.unwrap_or(to_and_fro);
-    let (slow_s, fast_s) = (slow_curve.duration_s(), fast_curve.duration_s());
-    let round_s = slow_s + share * (fast_s - slow_s);
+    let (walk_s, run_s) = (walk.duration_s(), run.duration_s());
+    let round_s = walk_s + share * (run_s - walk_s);
     for mut player in &mut players {
-        for (gait, weight, clip_s) in [(slow, 1.0 - share, slow_s), (fast, share, fast_s)] {
+        for (gait, weight, clip_s) in [
+            (&gaits.walk, 1.0 - share, walk_s),
+            (&gaits.run, share, run_s),
+        ] {
             if let Some(active) = player.animation_mut(gait.node) {
                 active.set_weight(weight).set_speed(clip_s / round_s);
             }
@@ -158,18 +152,8 @@ fn mix(
     }
 }
 
-fn pause_on_space(
-    keys: Res<ButtonInput<KeyCode>>,
-    mut time: ResMut<Time<Virtual>>,
-    mut gaits: ResMut<Gaits>,
-) {
-    if keys.just_pressed(KeyCode::Space) {
-        if time.is_paused() {
-            time.unpause();
-        } else {
-            time.pause();
-        }
-    }
+/// Up and down: more and less of the run.
+fn set_blend(keys: Res<ButtonInput<KeyCode>>, mut gaits: ResMut<Gaits>) {
     for (key, change) in [(KeyCode::ArrowUp, 0.1), (KeyCode::ArrowDown, -0.1)] {
         if keys.just_pressed(key) {
             let share = gaits.blend.unwrap_or(0.0) + change;
@@ -189,7 +173,7 @@ fn follow(
 ) {
     for (figure, mut camera) in figures.iter().zip(&mut cameras) {
         let centre = figure.translation + Vec3::new(0.0, 0.95, 0.0);
-        *camera = Transform::from_translation(centre + Vec3::new(0.4, 0.5, 4.2))
-            .looking_at(centre, Vec3::Y);
+        let from = centre + Vec3::new(0.4, 0.5, 4.6);
+        *camera = Transform::from_translation(from).looking_at(centre, Vec3::Y);
     }
 }

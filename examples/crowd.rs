@@ -1,4 +1,4 @@
-//! Many men who walk, each in a time of his own, and how long a frame takes with them.
+//! Many men who walk, each in a time of his own, and how long a frame takes with them. Space pauses.
 //!
 //! `cargo run --release --example crowd -- 20`
 //! `cargo run --release --example crowd -- 20 --measure 300`
@@ -67,7 +67,7 @@ fn main() -> ExitCode {
                     },
                 ),
             )
-            .add_systems(Update, (set_times, walk_round));
+            .add_systems(Update, (pictures::pause_on_space, set_times, walk_round));
         if let Some(frames) = measure {
             app.insert_resource(Measure {
                 count: frames.max(1),

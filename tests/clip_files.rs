@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 use bevy::prelude::*;
 use bevy_stick3d::HUMAN_MODEL;
 use bevy_stick3d::animation::StartedClip;
+use bevy_stick3d::model_data::files::write_atomically;
 use bevy_stick3d::prelude::*;
 use support::{app, app_with, cheer, positions, status, t_pose};
 
@@ -75,7 +76,7 @@ fn sketch_files_count_from_the_clips_folder_and_a_change_is_shown() {
     let write = |name: &str, text: &str| {
         let path = folder.path().join(name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, text).unwrap();
+        write_atomically(&path, text.as_bytes()).unwrap();
     };
     let sketch_json = |sketch: &StickSketch| {
         let sketch = sketch.to_sketch(Figure::human()).unwrap();
@@ -222,7 +223,7 @@ fn bad_clip_files_are_named_and_the_app_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     for (name, text, _) in &cases {
         let path = folder.path().join(format!("{name}.clip.ron"));
-        std::fs::write(path, text).unwrap();
+        write_atomically(&path, text.as_bytes()).unwrap();
     }
     let mut app = app_with(folder.path(), |_| {});
     let whole = app.world_mut().spawn((StickFigure::human(), t_pose())).id();

@@ -246,7 +246,7 @@ fn a_graph_blends_two_clips() {
 fn a_transition_goes_over_without_a_jump() {
     let mut app = app();
     let (man, nodes, curves) = with_graph(&mut app);
-    let mut start = |app: &mut App, node, over_s: f32| {
+    let start = |app: &mut App, node, over_s: f32| {
         let mut man = app.world_mut().entity_mut(man);
         let (mut transitions, mut player) = man
             .get_components_mut::<(&mut AnimationTransitions, &mut AnimationPlayer)>()
@@ -291,7 +291,7 @@ fn events_come_once_a_round_and_outlive_a_new_build() {
     let mut app = app();
     app.init_resource::<HandsUps>();
     app.add_observer(|event: On<HandsUp>, mut seen: ResMut<HandsUps>| {
-        seen.0.push(event.trigger().target)
+        seen.0.push(event.trigger().target);
     });
     let clip = add_clip(&mut app, raise(|clip| clip.repeat(Repeat::PingPong)));
     app.world_mut()

@@ -1,4 +1,4 @@
-//! What the moving examples share: pictures from the command line, and how an example ends.
+//! What the moving examples share: pictures from the command line, a pause, and how an example ends.
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -57,5 +57,17 @@ pub(crate) fn ended(example: &str, result: Result<(), LaunchError>) -> ExitCode 
             let _ = writeln!(std::io::stderr(), "{example}: {error}");
             ExitCode::from(error.exit_code())
         }
+    }
+}
+
+/// Space stops the time, and lets it run again.
+pub(crate) fn pause_on_space(keys: Res<ButtonInput<KeyCode>>, mut time: ResMut<Time<Virtual>>) {
+    if !keys.just_pressed(KeyCode::Space) {
+        return;
+    }
+    if time.is_paused() {
+        time.unpause();
+    } else {
+        time.pause();
     }
 }

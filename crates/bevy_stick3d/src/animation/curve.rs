@@ -184,7 +184,7 @@ impl AnimationCurve for LatentCurve {
     }
 }
 
-#[cfg(all(test, feature = "human"))]
+#[cfg(test)]
 mod tests {
     use stick3d_model::latent::{Easing, MotionSettings};
     use stick3d_model::{Inference, LatentKey};

@@ -203,7 +203,7 @@ impl AnimationCurveEvaluator for LatentCurveEvaluator {
     }
 }
 
-#[cfg(all(test, feature = "human"))]
+#[cfg(test)]
 mod tests {
     use stick3d_model::latent::{Easing, MotionSettings};
     use stick3d_model::{Inference, LatentKey, Motion};
