@@ -108,13 +108,9 @@ fn spawn_man(
     // The clips are empty until their files are loaded; the graph can be made at once.
     let handles = [&walk, &run].map(|clip| clips.animation(clip, &HUMAN_MODEL, &animations));
     let (graph, nodes) = AnimationGraph::from_clips(handles);
-    let mut player = AnimationPlayer::default();
-    for node in &nodes {
-        player.play(*node).repeat();
-    }
     commands.spawn((
         StickFigure::human(),
-        player,
+        AnimationPlayer::default(),
         AnimationGraphHandle(graphs.add(graph)),
     ));
     let [walk, run] = [(walk, nodes[0]), (run, nodes[1])].map(|(clip, node)| Gait { clip, node });
@@ -125,7 +121,8 @@ fn spawn_man(
     });
 }
 
-/// Weighs the two clips, and lets both take one step in the same time, so that their feet come down together.
+/// Plays the two clips once both are there, weighs them, and lets both take a step in the same time, so that their feet come
+/// down together.
 fn mix(
     mut players: Query<&mut AnimationPlayer>,
     gaits: Res<Gaits>,
@@ -145,9 +142,8 @@ fn mix(
             (&gaits.walk, 1.0 - share, walk_s),
             (&gaits.run, share, run_s),
         ] {
-            if let Some(active) = player.animation_mut(gait.node) {
-                active.set_weight(weight).set_speed(clip_s / round_s);
-            }
+            let active = player.play(gait.node).repeat();
+            active.set_weight(weight).set_speed(clip_s / round_s);
         }
     }
 }

@@ -16,7 +16,7 @@ use bevy::prelude::*;
 use bevy_stick3d::StreamedBody;
 use bevy_stick3d::animation::DecodeOutOfSight;
 use bevy_stick3d::prelude::*;
-use support::{app_with, cheer, modified_meshes, positions, t_pose};
+use support::{app_with, cheer, positions, t_pose, writes_in};
 
 /// An app that finds out what its camera sees, a man who raises and lowers his arms before it, and the camera.
 fn scene(bundle: impl Bundle) -> (App, Entity, Entity) {
@@ -55,15 +55,6 @@ fn looking(at: Vec3) -> Transform {
 
 fn look(app: &mut App, camera: Entity, at: Vec3) {
     *app.world_mut().get_mut::<Transform>(camera).unwrap() = looking(at);
-}
-
-/// How many meshes are written in so many frames.
-fn writes_in(app: &mut App, frames: usize) -> usize {
-    modified_meshes(app);
-    for _ in 0..frames {
-        app.update();
-    }
-    modified_meshes(app)
 }
 
 /// Whether the mesh is that of the latent.

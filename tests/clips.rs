@@ -17,7 +17,7 @@ use bevy_stick3d::animation::{
     ClipPlayback, LatentCurve, LatentProperty, STICK_TARGET, StartedClip,
 };
 use bevy_stick3d::prelude::*;
-use support::{TICK, app, app_with, cheer, modified_meshes, positions, status, t_pose};
+use support::{TICK, app, app_with, cheer, positions, status, t_pose, writes_in};
 
 /// From arms stretched out to arms up in half a second, then as `finish` says.
 fn raise(
@@ -165,28 +165,14 @@ fn a_loop_repeats_by_itself_and_a_clip_that_turns_back_does_too() {
 fn a_paused_or_finished_clip_costs_nothing() {
     let mut app = app();
     let (man, _) = playing(&mut app, raise(|clip| clip));
-    for _ in 0..5 {
-        app.update();
-    }
-    assert!(modified_meshes(&mut app) > 0);
+    app.update();
+    assert_eq!(writes_in(&mut app, 5), 5);
     active(&mut app, man).pause();
-    for _ in 0..2 {
-        app.update();
-    }
-    modified_meshes(&mut app);
-    for _ in 0..5 {
-        app.update();
-    }
-    assert_eq!(modified_meshes(&mut app), 0, "paused");
+    app.update();
+    assert_eq!(writes_in(&mut app, 5), 0, "paused");
     active(&mut app, man).resume();
-    for _ in 0..40 {
-        app.update();
-    }
-    assert!(modified_meshes(&mut app) > 20);
-    for _ in 0..5 {
-        app.update();
-    }
-    assert_eq!(modified_meshes(&mut app), 0, "finished");
+    assert!(writes_in(&mut app, 40) > 20);
+    assert_eq!(writes_in(&mut app, 5), 0, "finished");
 }
 
 /// A man with two clips, up and down, in a graph of his own; and the clips' nodes.

@@ -116,3 +116,13 @@ pub(crate) fn modified_meshes(app: &mut App) -> usize {
         .filter(|event| matches!(event, AssetEvent::Modified { .. }))
         .count()
 }
+
+/// How many times meshes are written in so many frames.
+pub(crate) fn writes_in(app: &mut App, frames: usize) -> usize {
+    modified_meshes(app);
+    let writes = (0..frames).map(|_| {
+        app.update();
+        modified_meshes(app)
+    });
+    writes.sum()
+}

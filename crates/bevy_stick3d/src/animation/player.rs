@@ -187,8 +187,8 @@ pub(super) fn tell_status(
             let of_file = || assets.problem(clip).filter(|_| unbuilt);
             clips.problem(clip, &figure.0).or_else(of_file)
         };
-        let of_playback = playback.error().map(ToString::to_string);
-        let problem = of_playback.or_else(|| of_clip().map(str::to_owned));
+        let of_playback = || playback.error().map(ToString::to_string);
+        let problem = of_clip().map(str::to_owned).or_else(of_playback);
         let told = &mut playback.bypass_change_detection().told;
         if let Some(problem) = problem {
             status.set_if_neq(FigureStatus::Failed(problem));

@@ -87,6 +87,9 @@ pub(super) fn move_figures(
     for (&AnimatedBy(player), root_motion, mut playback, mut transform) in &mut figures {
         let bypassed = playback.bypass_change_detection();
         let played = std::mem::take(&mut bypassed.played);
+        if !played {
+            bypassed.error = None;
+        }
         let (mut step_m, mut lift_m) = (Vec3::ZERO, 0.0);
         if played && let Ok((player, graph)) = players.get(player) {
             let graph = graphs.get(graph);
