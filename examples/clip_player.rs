@@ -11,6 +11,7 @@ mod scene;
 
 use std::process::ExitCode;
 
+use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
 use bevy_stick3d::HUMAN_MODEL;
 use bevy_stick3d::prelude::*;
@@ -65,7 +66,7 @@ fn main() -> ExitCode {
     } = Arguments::parse();
     let result = pictures.launch("clips").run(|app| {
         app.add_plugins(Stick3dPlugin)
-            .add_systems(Startup, (scene::build, spawn_camera))
+            .add_systems(Startup, (scene::build, lay_stones, spawn_camera))
             .add_systems(Update, pictures::pause_on_space)
             .add_systems(
                 PostUpdate,
@@ -162,14 +163,39 @@ fn spawn_camera(mut commands: Commands) {
     commands.spawn((Camera3d::default(), Transform::default()));
 }
 
-/// The camera goes along with the figure.
+/// The camera goes along with the figure, as far off as its body is large.
 fn follow(
-    figures: Query<&Transform, (With<StickFigure>, Without<Camera3d>)>,
+    figures: Query<(&Transform, &Aabb), (With<StickFigure>, Without<Camera3d>)>,
     mut cameras: Query<&mut Transform, With<Camera3d>>,
+    mut distance_m: Local<Option<f32>>,
 ) {
-    for (figure, mut camera) in figures.iter().zip(&mut cameras) {
-        let centre = figure.translation + Vec3::new(0.0, 0.95, 0.0);
-        let from = centre + Vec3::new(0.4, 0.5, 4.6);
+    for ((figure, body), mut camera) in figures.iter().zip(&mut cameras) {
+        let distance_m = distance_m.get_or_insert(2.7 * body.half_extents.length());
+        let centre = figure.translation + Vec3::from(body.center) * Vec3::X + Vec3::Y * 0.9;
+        let from = centre + *distance_m * Vec3::new(0.1, 0.14, 1.0).normalize();
         *camera = Transform::from_translation(from).looking_at(centre, Vec3::Y);
+    }
+}
+
+/// Stones on the meadow, to see the way by: one every metre.
+fn lay_stones(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    let stone = meshes.add(Sphere::new(0.035));
+    let grey = materials.add(StandardMaterial {
+        base_color: Color::srgb(0.78, 0.79, 0.74),
+        perceptual_roughness: 1.0,
+        ..default()
+    });
+    for x in -4..30 {
+        for z in -6..14 {
+            commands.spawn((
+                Mesh3d(stone.clone()),
+                MeshMaterial3d(grey.clone()),
+                Transform::from_xyz(x as f32, 0.0, z as f32).with_scale(Vec3::new(1.0, 0.4, 1.0)),
+            ));
+        }
     }
 }

@@ -11,7 +11,7 @@ use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
 use bevy_stick3d::StreamedBody;
 use bevy_stick3d::prelude::*;
-use support::{app, bounds, cheer, joint, normals, positions, status, t_pose};
+use support::{app, bounds, cheer, joint, normals, positions, status, t_pose, writes_in};
 
 #[test]
 fn a_sketch_is_a_body_in_the_same_frame() {
