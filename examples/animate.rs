@@ -69,7 +69,7 @@ fn spawn_figures(mut commands: Commands, mut clips: ResMut<Assets<StickClip>>) -
     commands.spawn((StickFigure::human(), PlayStickClip(clips.add(clip))));
 
     // What was drawn, beside it.
-    for (x, sketch) in [(-1.5, ready), (1.5, balancing)] {
+    for (x, sketch) in [(-1.7, ready), (1.6, balancing)] {
         let place = Transform::from_xyz(x, 0.0, -0.6);
         commands.spawn((StickFigure::human(), sketch, place));
     }
@@ -79,6 +79,6 @@ fn spawn_figures(mut commands: Commands, mut clips: ResMut<Assets<StickClip>>) -
 fn spawn_camera(mut commands: Commands) {
     commands.spawn((
         Camera3d::default(),
-        Transform::from_xyz(0.3, 1.5, 4.6).looking_at(Vec3::new(0.0, 0.98, 0.0), Vec3::Y),
+        Transform::from_xyz(0.3, 1.4, 3.9).looking_at(Vec3::new(0.0, 1.0, 0.0), Vec3::Y),
     ));
 }

@@ -97,12 +97,7 @@ pub(super) fn move_figures(
                 let Some(active) = player.animation(*node) else {
                     continue;
                 };
-                let clip = graph.and_then(|graph| graph.get(*node)).and_then(|node| {
-                    match &node.node_type {
-                        AnimationNodeType::Clip(clip) => clips.get(clip),
-                        AnimationNodeType::Blend | AnimationNodeType::Add => None,
-                    }
-                });
+                let clip = graph.and_then(|graph| clip_of(graph, *node, &clips));
                 let duration_s = clip.map_or(curve.duration_s(), AnimationClip::duration);
                 step_m += *share * step(curve, active, duration_s, time.delta_secs());
                 lift_m += *share * curve.lift_m(active.seek_time());
@@ -119,6 +114,18 @@ pub(super) fn move_figures(
             let step = transform.rotation * (transform.scale * step_m);
             transform.translation += step;
         }
+    }
+}
+
+/// The clip of a node.
+fn clip_of<'a>(
+    graph: &AnimationGraph,
+    node: AnimationNodeIndex,
+    clips: &'a Assets<AnimationClip>,
+) -> Option<&'a AnimationClip> {
+    match &graph.get(node)?.node_type {
+        AnimationNodeType::Clip(clip) => clips.get(clip),
+        AnimationNodeType::Blend | AnimationNodeType::Add => None,
     }
 }
 
