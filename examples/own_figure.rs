@@ -58,6 +58,7 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
         size_px: UVec2::new(1280, 720),
         screenshot: arguments.screenshot,
         asset_folder: Some(folder),
+        ..default()
     };
     launch.run(|app| {
         app.add_plugins(Stick3dPlugin)

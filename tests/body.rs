@@ -11,7 +11,7 @@ use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
 use bevy_stick3d::StreamedBody;
 use bevy_stick3d::prelude::*;
-use support::{app, bounds, cheer, joint, normals, positions, status, t_pose};
+use support::{app, bounds, cheer, joint, normals, positions, status, t_pose, writes_in};
 
 #[test]
 fn a_sketch_is_a_body_in_the_same_frame() {
@@ -105,15 +105,6 @@ fn grounding_can_be_turned_off() {
     assert!(low.y.abs() < 1.0e-5);
 }
 
-/// Which meshes were written since the last look.
-fn modified_meshes(app: &mut App) -> usize {
-    app.world_mut()
-        .resource_mut::<Messages<AssetEvent<Mesh>>>()
-        .drain()
-        .filter(|event| matches!(event, AssetEvent::Modified { .. }))
-        .count()
-}
-
 #[test]
 fn unchanged_figures_are_not_touched() {
     let mut app = app();
@@ -122,11 +113,7 @@ fn unchanged_figures_are_not_touched() {
         .collect();
     app.update();
     app.update();
-    modified_meshes(&mut app);
-    for _ in 0..5 {
-        app.update();
-    }
-    assert_eq!(modified_meshes(&mut app), 0);
+    assert_eq!(writes_in(&mut app, 5), 0);
 
     let mesh = app
         .world()

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "every test uses some of it")]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::path::Path;
 use std::time::Duration;
 
 use bevy::asset::AssetPlugin;
@@ -9,21 +10,29 @@ use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use bevy_stick3d::prelude::*;
 
+/// What the clock ticks per update.
+pub(crate) const TICK: Duration = Duration::from_micros(16_667);
+
 /// An app with nothing but what the plugin needs, and a clock that ticks a 60th of a second per update.
 pub(crate) fn app() -> App {
+    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data");
+    app_with(Path::new(data), |_| {})
+}
+
+/// As [`app`], with assets in another folder, and with what `add` adds.
+pub(crate) fn app_with(assets: &Path, add: impl FnOnce(&mut App)) -> App {
     let mut app = App::new();
     app.add_plugins((
         MinimalPlugins,
         AssetPlugin {
-            file_path: concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data").to_owned(),
+            file_path: assets.display().to_string(),
             ..default()
         },
         TransformPlugin,
         Stick3dPlugin,
     ))
-    .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_micros(
-        16_667,
-    )));
+    .insert_resource(TimeUpdateStrategy::ManualDuration(TICK));
+    add(&mut app);
     app.finish();
     app.cleanup();
     app
@@ -97,4 +106,23 @@ pub(crate) fn bounds(positions: &[Vec3]) -> (Vec3, Vec3) {
 /// How an entity says it is doing.
 pub(crate) fn status(app: &App, entity: Entity) -> FigureStatus {
     app.world().get::<FigureStatus>(entity).unwrap().clone()
+}
+
+/// Which meshes were written since the last look.
+pub(crate) fn modified_meshes(app: &mut App) -> usize {
+    app.world_mut()
+        .resource_mut::<Messages<AssetEvent<Mesh>>>()
+        .drain()
+        .filter(|event| matches!(event, AssetEvent::Modified { .. }))
+        .count()
+}
+
+/// How many times meshes are written in so many frames.
+pub(crate) fn writes_in(app: &mut App, frames: usize) -> usize {
+    modified_meshes(app);
+    let writes = (0..frames).map(|_| {
+        app.update();
+        modified_meshes(app)
+    });
+    writes.sum()
 }

@@ -17,6 +17,8 @@ use crate::stream::StreamedBody;
 ///
 /// # Optional components
 /// - [`StickSketch`]: the drawing. Without one, and without a latent, the figure stands as its template does.
+/// - [`PlayStickClip`](crate::animation::PlayStickClip), or an `AnimationPlayer` with a graph: motions. See
+///   [`animation`](crate::animation).
 /// - A material. Without one the body gets the colours of its model, see
 ///   [`Stick3dMaterialPlugin`](crate::Stick3dMaterialPlugin).
 ///
@@ -120,13 +122,14 @@ impl From<&Sketch> for StickSketch {
 
 /// The pose as the networks know it: the 256 numbers z of the paper.
 ///
-/// Empty until the figure is first posed. Written by the plugin when the [`StickSketch`] changes, and
-/// free to be written by anything else: an animation, a blend of two poses, a slider.
+/// Empty until the figure is first posed. Written by the plugin when the [`StickSketch`] changes, and in every frame by clips
+/// that play, see [`animation`](crate::animation); free to be written by anything else: a blend of two poses, a slider.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Debug, Default, PartialEq, Clone)]
 pub struct Latent(pub Vec<f32>);
 
-/// Whether the body stands on the ground: its lowest vertex at y = 0 of the entity. On by default.
+/// Whether the body stands on the ground: its lowest vertex at y = 0 of the entity, or above while a clip has it in flight. On by
+/// default.
 ///
 /// When off, the figure's root joint (a man's abdomen, a horse's hip) is at the entity's origin.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
@@ -143,7 +146,7 @@ impl Default for Grounded {
 #[derive(Component, Clone, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Debug, Default, PartialEq, Clone)]
 pub enum FigureStatus {
-    /// The model is not there yet.
+    /// The model, or the clip to play, is not there yet.
     #[default]
     Waiting,
     /// The body shows the sketch or latent.

@@ -25,6 +25,10 @@
 //! networks know it). The plugin writes [`StreamedBody`], [`FigureStatus`], and the entity's `Mesh3d`.
 //! A change of the first becomes a change of the second in the same frame; see [`Stick3dSystems`].
 //!
+//! # Motions
+//! Several sketches are a clip, and a clip is a Bevy animation: `(StickFigure::human(), PlayStickClip(clip))` plays it, and a
+//! grounded walk walks on. See [`animation`].
+//!
 //! # Plugins
 //! [`Stick3dPlugin`] is nothing but these, and each can be left out or replaced:
 //!
@@ -34,6 +38,7 @@
 //! | [`Stick3dModelPlugin`] | models as assets; the embedded man and horse |
 //! | [`Stick3dSketchInputPlugin`] | pointer input over a [`SketchCanvas`] becomes strokes and sketches |
 //! | [`Stick3dInferencePlugin`] | sketches become latents |
+//! | [`Stick3dAnimationPlugin`] | clips of sketches become Bevy animations that move latents and figures; see [`animation`] |
 //! | [`Stick3dStreamPlugin`] | latents become meshes |
 //! | [`Stick3dMaterialPlugin`] | figures without a material get one |
 //!
@@ -45,8 +50,9 @@
 //! | `editor` | no | the pose editor, on `bevy_egui`; [`launch`], which takes pictures without a window |
 //!
 //! # When something is wrong
-//! Nothing panics: [`Stick3dStatus`] says what is wrong with models, [`FigureStatus`] what is wrong with a figure.
+//! Nothing panics: [`Stick3dStatus`] says what is wrong with models and clips, [`FigureStatus`] what is wrong with a figure.
 
+pub mod animation;
 #[cfg(feature = "editor")]
 pub mod editor;
 mod embedded;
@@ -63,6 +69,7 @@ mod stream;
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
+pub use animation::Stick3dAnimationPlugin;
 #[cfg(feature = "horse")]
 pub use embedded::HORSE_MODEL;
 #[cfg(feature = "human")]
@@ -76,12 +83,15 @@ pub use schedule::{Stick3dSchedulePlugin, Stick3dSystems};
 pub use sketch_input::{SketchCanvas, Stick3dSketchInputPlugin};
 pub use status::Stick3dStatus;
 pub use stick3d_figure as figure_data;
+pub use stick3d_model as model_data;
 pub use stream::{Stick3dStreamPlugin, StreamError, StreamedBody};
 
 /// What most apps need.
 pub mod prelude {
     pub use stick3d_figure::{Figure, Sketch};
+    pub use stick3d_model::latent::{Easing, Extrapolation, Interpolation, Repeat};
 
+    pub use crate::animation::{PlayStickClip, RootMotion, StickClip, StickClips};
     pub use crate::sketch_input::{
         CanvasArea, SketchCanvas, SketchChanged, SketchCompleted, SketchDrawing, StrokeFinished,
         StrokeUndone,
@@ -105,6 +115,7 @@ impl PluginGroup for Stick3dPlugin {
             .add(Stick3dModelPlugin)
             .add(Stick3dSketchInputPlugin)
             .add(Stick3dInferencePlugin)
+            .add(Stick3dAnimationPlugin)
             .add(Stick3dStreamPlugin)
             .add(Stick3dMaterialPlugin)
     }

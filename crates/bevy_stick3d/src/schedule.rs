@@ -15,12 +15,16 @@ use bevy::prelude::*;
 pub enum Stick3dSystems {
     /// Pointer input becomes strokes, strokes become a [`StickSketch`](crate::StickSketch). (`PreUpdate`)
     Input,
+    /// Clips that play, which Bevy's animation has evaluated, move their figures over the ground. (`PostUpdate`)
+    Animate,
     /// Drawings that code changed are told, and their sketches put on the figures. (`PostUpdate`)
     Tell,
     /// Loaded, changed and removed models are made ready to run. (`PostUpdate`)
     Models,
     /// A changed [`StickSketch`](crate::StickSketch) becomes a [`Latent`](crate::Latent). (`PostUpdate`)
     Encode,
+    /// Clips whose model is ready become animations, and start. (`PostUpdate`)
+    Clips,
     /// A changed [`Latent`](crate::Latent) becomes the vertices of the entity's mesh. (`PostUpdate`)
     Decode,
     /// Bodies that were given no material get the default one. (`PostUpdate`)
@@ -40,9 +44,11 @@ impl Plugin for Stick3dSchedulePlugin {
         .configure_sets(
             PostUpdate,
             (
+                Stick3dSystems::Animate,
                 Stick3dSystems::Tell,
                 Stick3dSystems::Models,
                 Stick3dSystems::Encode,
+                Stick3dSystems::Clips,
                 Stick3dSystems::Decode,
                 Stick3dSystems::Dress,
             )

@@ -1,29 +1,28 @@
 //! Whether the plugin works: what a game asks before it blames the player.
 
+use bevy::asset::UntypedAssetId;
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 
-use crate::model_asset::StickModel;
-
-/// What is wrong with the models, if anything. A problem is logged once, when it appears.
+/// What is wrong with models and clips, if anything. A problem is logged once, when it appears.
 ///
 /// What is wrong with a single figure, such as a sketch with a NaN in it, is in its
 /// [`FigureStatus`](crate::FigureStatus).
 #[derive(Resource, Clone, Debug, Default, Reflect)]
 #[reflect(Resource, Debug, Default, Clone)]
 pub struct Stick3dStatus {
-    problems: HashMap<AssetId<StickModel>, String>,
+    problems: HashMap<UntypedAssetId, String>,
 }
 
 impl Stick3dStatus {
-    /// Whether every model that is used works.
+    /// Whether every model and clip that is used works.
     pub fn is_ok(&self) -> bool {
         self.problems.is_empty()
     }
 
-    /// Why a model does not work; `None` when it works or was not used yet.
-    pub fn problem(&self, model: impl Into<AssetId<StickModel>>) -> Option<&str> {
-        self.problems.get(&model.into()).map(String::as_str)
+    /// Why a model or a clip does not work; `None` when it works or was not used yet.
+    pub fn problem(&self, asset: impl Into<UntypedAssetId>) -> Option<&str> {
+        self.problems.get(&asset.into()).map(String::as_str)
     }
 
     /// All problems, one sentence each, in alphabetical order.
@@ -33,24 +32,25 @@ impl Stick3dStatus {
         messages
     }
 
-    /// Notes that a model does not work, and logs it unless that is known.
-    pub fn fail(&mut self, model: impl Into<AssetId<StickModel>>, message: impl Into<String>) {
+    /// Notes that a model or a clip does not work, and logs it unless that is known.
+    pub fn fail(&mut self, asset: impl Into<UntypedAssetId>, message: impl Into<String>) {
         let message = message.into();
-        let known = self.problems.insert(model.into(), message.clone());
+        let known = self.problems.insert(asset.into(), message.clone());
         if known.as_ref() != Some(&message) {
             error!("{message}");
         }
     }
 
-    /// Notes that a model works.
-    pub fn clear(&mut self, model: impl Into<AssetId<StickModel>>) {
-        self.problems.remove(&model.into());
+    /// Notes that a model or a clip works.
+    pub fn clear(&mut self, asset: impl Into<UntypedAssetId>) {
+        self.problems.remove(&asset.into());
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model_asset::StickModel;
 
     #[test]
     fn problems_come_and_go() {

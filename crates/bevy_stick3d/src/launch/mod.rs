@@ -5,7 +5,7 @@
 mod picture;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -19,7 +19,10 @@ use bevy::winit::WinitPlugin;
 use thiserror::Error;
 
 pub use picture::PictureError;
-use picture::PicturePlugin;
+use picture::{PicturePlugin, Shot};
+
+/// A frame of an app without a window.
+const FRAME: Duration = Duration::from_millis(16);
 
 /// How an app is started.
 #[derive(Clone, Debug)]
@@ -30,6 +33,11 @@ pub struct Launch {
     pub size_px: UVec2,
     /// Open no window: take a picture as soon as all figures are ready, write it here as PNG, and end.
     pub screenshot: Option<PathBuf>,
+    /// Take the picture so long after all figures are ready, seconds; until then the app's time stands still. Else it is
+    /// taken at once, and time has run since the start.
+    pub at_s: Option<f32>,
+    /// Take several pictures, from then on; `screenshot` is the folder of `frame_0000.png` and so on.
+    pub series: Option<Series>,
     /// The folder that asset paths begin at; Bevy's own choice when `None`.
     pub asset_folder: Option<PathBuf>,
 }
@@ -40,9 +48,20 @@ impl Default for Launch {
             title: "stick3d".to_owned(),
             size_px: UVec2::new(1600, 900),
             screenshot: None,
+            at_s: None,
+            series: None,
             asset_folder: None,
         }
     }
+}
+
+/// Several pictures, one after the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Series {
+    /// How many pictures.
+    pub count: u32,
+    /// How many frames of 16 ms are between two of them.
+    pub every: u32,
 }
 
 /// Why an app did not start, or ended early.
@@ -91,6 +110,9 @@ impl Launch {
     /// # Errors
     /// [`LaunchError`]: one sentence for the user, and an exit code.
     pub fn run(&self, build: impl FnOnce(&mut App)) -> Result<(), LaunchError> {
+        if let (Some(folder), Some(_)) = (&self.screenshot, self.series) {
+            std::fs::create_dir_all(folder).map_err(PictureError::from)?;
+        }
         let outcome = Arc::new(Mutex::new(None));
         let mut app = quietly(|| {
             let mut app = App::new();
@@ -99,7 +121,8 @@ impl Launch {
                 Some(path) => {
                     self.add_no_window(&mut app);
                     app.add_plugins(PicturePlugin {
-                        path: path.clone(),
+                        shots: self.shots(path),
+                        holds_time: self.at_s.is_some() || self.series.is_some(),
                         size_px: self.size_px,
                         outcome: outcome.clone(),
                     });
@@ -155,9 +178,24 @@ impl Launch {
         )
         .add_plugins(ScheduleRunnerPlugin::run_loop(Duration::ZERO))
         // The picture must not depend on how fast the machine is.
-        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(
-            16,
-        )));
+        .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME));
+    }
+
+    /// The pictures to take, by the frame after everything is ready.
+    fn shots(&self, path: &Path) -> Vec<Shot> {
+        let first = (self.at_s.unwrap_or(0.0) / FRAME.as_secs_f32()).round() as u32;
+        match self.series {
+            None => vec![Shot {
+                frame: first,
+                path: path.to_owned(),
+            }],
+            Some(Series { count, every }) => (0..count.max(1))
+                .map(|index| Shot {
+                    frame: first + index * every,
+                    path: path.join(format!("frame_{index:04}.png")),
+                })
+                .collect(),
+        }
     }
 
     fn assets(&self) -> AssetPlugin {
@@ -217,6 +255,23 @@ fn start_error(message: &str) -> LaunchError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pictures_are_taken_at_their_times() {
+        let launch = Launch {
+            at_s: Some(0.5),
+            series: Some(Series {
+                count: 3,
+                every: 10,
+            }),
+            ..default()
+        };
+        let shots = launch.shots(Path::new("walk"));
+        let frames: Vec<u32> = shots.iter().map(|shot| shot.frame).collect();
+        assert_eq!(frames, [31, 41, 51]);
+        assert!(shots[2].path.ends_with("walk/frame_0002.png"));
+        assert_eq!(Launch::default().shots(Path::new("one.png"))[0].frame, 0);
+    }
 
     #[test]
     fn panics_of_the_set_up_become_sentences_with_codes() {

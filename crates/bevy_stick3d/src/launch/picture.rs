@@ -1,7 +1,7 @@
-//! Taking a picture of an app that has no window, for scripts and tests.
+//! Taking pictures of an app that has no window, for scripts and tests.
 
 use std::io::Cursor;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -40,10 +40,21 @@ pub enum PictureError {
     Write(#[from] std::io::Error),
 }
 
-/// Takes one picture as soon as everything is there, writes it, and ends the app.
-pub(super) struct PicturePlugin {
-    /// Where to write.
+/// One picture to take.
+#[derive(Clone, Debug)]
+pub(super) struct Shot {
+    /// How many frames after everything was there.
+    pub(super) frame: u32,
+    /// Where to write it.
     pub(super) path: PathBuf,
+}
+
+/// Takes pictures from when everything is there, writes them, and ends the app.
+pub(super) struct PicturePlugin {
+    /// Which.
+    pub(super) shots: Vec<Shot>,
+    /// Whether the app's time stands still until everything is there.
+    pub(super) holds_time: bool,
     /// How large.
     pub(super) size_px: UVec2,
     /// What went wrong, for whoever runs the app.
@@ -60,15 +71,19 @@ impl Plugin for PicturePlugin {
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(image);
         app.insert_resource(Shoot {
             target,
-            path: self.path.clone(),
+            shots: self.shots.clone(),
+            unwritten: self.shots.len(),
             outcome: self.outcome.clone(),
             pending: pending.clone(),
             frames: 0,
             calm_frames: 0,
-            shot: false,
+            running: None,
         })
         .add_systems(PostStartup, turn_cameras)
-        .add_systems(Last, shoot_when_ready);
+        .add_systems(Last, (wait_until_ready, shoot).chain());
+        if self.holds_time {
+            app.add_systems(PreStartup, |mut time: ResMut<Time<Virtual>>| time.pause());
+        }
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app
                 .insert_resource(Pending(pending))
@@ -91,12 +106,16 @@ fn count_pending_pipelines(cache: Res<PipelineCache>, pending: Res<Pending>) {
 struct Shoot {
     /// What stands for the screen.
     target: Handle<Image>,
-    path: PathBuf,
+    /// Those to be taken.
+    shots: Vec<Shot>,
+    /// How many are not written.
+    unwritten: usize,
     outcome: Arc<Mutex<Option<PictureError>>>,
     pending: Arc<AtomicUsize>,
     frames: u32,
     calm_frames: u32,
-    shot: bool,
+    /// How many frames ago everything was there.
+    running: Option<u32>,
 }
 
 impl Shoot {
@@ -120,24 +139,24 @@ fn turn_cameras(mut targets: Query<&mut RenderTarget>, shoot: Res<Shoot>) {
     }
 }
 
-fn shoot_when_ready(
-    mut commands: Commands,
+/// Finds out when everything is there, and lets time run from then on.
+fn wait_until_ready(
     mut shoot: ResMut<Shoot>,
+    mut time: ResMut<Time<Virtual>>,
     figures: Query<&FigureStatus>,
     mut exit: MessageWriter<AppExit>,
 ) {
-    if shoot.shot {
+    if let Some(problem) = figures.iter().find_map(FigureStatus::problem) {
+        shoot.end(Err(PictureError::Body(problem.to_owned())), &mut exit);
+        return;
+    }
+    if let Some(running) = &mut shoot.running {
+        *running += 1;
         return;
     }
     shoot.frames += 1;
     let pending = shoot.pending.load(Ordering::Relaxed);
-    if let Some(problem) = figures.iter().find_map(FigureStatus::problem) {
-        shoot.shot = true;
-        shoot.end(Err(PictureError::Body(problem.to_owned())), &mut exit);
-        return;
-    }
     if shoot.frames > MAX_FRAMES {
-        shoot.shot = true;
         shoot.end(Err(PictureError::NeverReady(pending)), &mut exit);
         return;
     }
@@ -147,21 +166,34 @@ fn shoot_when_ready(
             .any(|status| *status == FigureStatus::Waiting);
     shoot.calm_frames = if waiting { 0 } else { shoot.calm_frames + 1 };
     if shoot.calm_frames >= CALM_FRAMES {
-        shoot.shot = true;
-        commands
-            .spawn(Screenshot::image(shoot.target.clone()))
-            .observe(write_picture);
+        shoot.running = Some(0);
+        time.unpause();
     }
 }
 
-fn write_picture(
-    captured: On<ScreenshotCaptured>,
-    shoot: Res<Shoot>,
-    mut exit: MessageWriter<AppExit>,
-) {
-    let result =
-        png_bytes(&captured.image).and_then(|bytes| Ok(write_atomically(&shoot.path, &bytes)?));
-    shoot.end(result, &mut exit);
+/// Takes the pictures of this frame.
+fn shoot(mut commands: Commands, mut shoot: ResMut<Shoot>) {
+    let Some(running) = shoot.running else {
+        return;
+    };
+    let target = shoot.target.clone();
+    for Shot { path, .. } in shoot.shots.extract_if(.., |shot| shot.frame == running) {
+        commands.spawn(Screenshot::image(target.clone())).observe(
+            move |captured: On<ScreenshotCaptured>,
+                  mut shoot: ResMut<Shoot>,
+                  mut exit: MessageWriter<AppExit>| {
+                shoot.unwritten -= 1;
+                let written = write_picture(&captured.image, &path);
+                if written.is_err() || shoot.unwritten == 0 {
+                    shoot.end(written, &mut exit);
+                }
+            },
+        );
+    }
+}
+
+fn write_picture(image: &Image, path: &Path) -> Result<(), PictureError> {
+    Ok(write_atomically(path, &png_bytes(image)?)?)
 }
 
 fn png_bytes(image: &Image) -> Result<Vec<u8>, PictureError> {

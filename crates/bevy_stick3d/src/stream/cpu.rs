@@ -61,23 +61,24 @@ pub(crate) fn check(latent: &[f32], expected: usize) -> Result<(), StreamError> 
     }
 }
 
-/// Decodes a latent into the positions and normals of `mesh`. Allocates nothing.
+/// Decodes a latent into the positions and normals of `mesh`, its lowest vertex at the height `lowest_m`; where there is none,
+/// its root joint at the origin. Allocates nothing.
 pub(crate) fn write_body(
     inference: &mut Inference,
     latent: &[f32],
-    grounded: bool,
+    lowest_m: Option<f32>,
     mesh: &mut Mesh,
 ) -> Result<BodyBounds, StreamError> {
     let (positions, normals) = vertex_buffers(mesh)?;
     inference.decode(latent, positions, normals)?;
     let mut bounds = bounds_of(positions);
-    if grounded {
-        let lift = -bounds.low.y;
+    if let Some(lowest_m) = lowest_m {
+        let lift_m = lowest_m - bounds.low.y;
         for position in positions {
-            position[1] += lift;
+            position[1] += lift_m;
         }
-        bounds.low.y = 0.0;
-        bounds.high.y += lift;
+        bounds.low.y = lowest_m;
+        bounds.high.y += lift_m;
     }
     Ok(bounds)
 }

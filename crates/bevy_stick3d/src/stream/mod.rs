@@ -1,14 +1,16 @@
 //! From latents to bodies: what a figure's own mesh is, and when it is written.
 
 mod cpu;
+mod sight;
 
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::primitives::Aabb;
-use bevy::camera::visibility::NoAutoAabb;
+use bevy::camera::visibility::{NoAutoAabb, VisibilityPlugin};
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 use stick3d_model::Model;
 
+use crate::animation::ClipPlayback;
 use crate::figure::{FigureStatus, Grounded, Latent, StickFigure};
 use crate::inference::{ReadyModel, StickInference};
 use crate::model_asset::StickModel;
@@ -16,6 +18,7 @@ use crate::schedule::Stick3dSystems;
 
 use cpu::BodyBounds;
 pub use cpu::StreamError;
+use sight::{Sight, SightIsChecked};
 
 /// The body of a figure, as the plugin keeps it. Written by the plugin.
 ///
@@ -27,6 +30,10 @@ pub struct StreamedBody {
     model: Option<AssetId<StickModel>>,
     generation: u64,
     failed: bool,
+    /// Whether it was out of sight when it last had to be decoded.
+    stale: bool,
+    /// How high the lowest vertex is while grounded, metres.
+    lift_m: f32,
 }
 
 impl StreamedBody {
@@ -43,6 +50,17 @@ impl StreamedBody {
     /// Which ready model made the mesh; 0 before the first.
     pub fn generation(&self) -> u64 {
         self.generation
+    }
+
+    /// Whether the mesh is older than the latent, as the figure was out of sight; see
+    /// [`DecodeOutOfSight`](crate::animation::DecodeOutOfSight).
+    pub fn is_stale(&self) -> bool {
+        self.stale
+    }
+
+    /// Whether the last latent could not be decoded.
+    pub(crate) fn has_failed(&self) -> bool {
+        self.failed
     }
 }
 
@@ -62,6 +80,9 @@ impl Plugin for Stick3dStreamPlugin {
         if !app.world().contains_resource::<Assets<Mesh>>() {
             app.init_asset::<Mesh>();
         }
+        if app.is_plugin_added::<VisibilityPlugin>() {
+            app.init_resource::<SightIsChecked>();
+        }
     }
 }
 
@@ -73,22 +94,41 @@ fn stream_bodies(
         &StickFigure,
         Ref<Latent>,
         Ref<Grounded>,
+        Option<&ClipPlayback>,
         &mut StreamedBody,
         &mut FigureStatus,
         Option<&mut Aabb>,
+        Sight,
     )>,
     mut inference: ResMut<StickInference>,
     mut meshes: ResMut<Assets<Mesh>>,
+    sight_is_checked: Option<Res<SightIsChecked>>,
 ) {
-    for (entity, figure, latent, grounded, mut body, mut status, aabb) in &mut figures {
+    for (entity, figure, latent, grounded, playback, mut body, mut status, aabb, sight) in
+        &mut figures
+    {
         let Some(ready) = inference.get_mut(&figure.0) else {
             continue;
         };
         let other_model = body.generation != ready.generation;
-        if !(other_model || latent.is_changed() || grounded.is_changed()) {
+        let lift_m = playback.map_or(0.0, |playback| playback.lift_m);
+        let changed = latent.is_changed() || grounded.is_changed() || body.lift_m != lift_m;
+        if !(other_model || changed || body.stale) {
             continue;
         }
-        if other_model || body.mesh.is_none() {
+        let is_new = other_model || body.mesh.is_none();
+        if !is_new && sight_is_checked.is_some() && sight.is_out() {
+            if !body.stale {
+                body.stale = true;
+                if let Some(mut aabb) = aabb {
+                    *aabb = sight::any_pose(&aabb);
+                }
+            }
+            continue;
+        }
+        body.stale = false;
+        body.lift_m = lift_m;
+        if is_new {
             let mesh = meshes.add(empty_mesh(ready.model.model()));
             commands
                 .entity(entity)
@@ -102,7 +142,7 @@ fn stream_bodies(
             .as_ref()
             .and_then(|handle| meshes.get_mut(handle))
             .ok_or(StreamError::MeshGone)
-            .and_then(|mesh| show(ready, &latent, *grounded, mesh));
+            .and_then(|mesh| show(ready, &latent, grounded.0.then_some(lift_m), mesh));
         match shown {
             Ok(bounds) => {
                 let bounds = Aabb::from_min_max(bounds.low, bounds.high);
@@ -129,11 +169,11 @@ fn stream_bodies(
 fn show(
     ready: &mut ReadyModel,
     latent: &Latent,
-    grounded: Grounded,
+    lowest_m: Option<f32>,
     mut mesh: bevy::asset::AssetMut<Mesh>,
 ) -> Result<BodyBounds, StreamError> {
     cpu::check(&latent.0, ready.inference.latent_len())?;
-    cpu::write_body(&mut ready.inference, &latent.0, grounded.0, &mut mesh)
+    cpu::write_body(&mut ready.inference, &latent.0, lowest_m, &mut mesh)
 }
 
 /// A mesh of the model's topology and colours, all vertices at the origin.

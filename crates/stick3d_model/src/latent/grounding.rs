@@ -53,6 +53,8 @@ pub(super) struct GroundTrack {
     times_s: Vec<f32>,
     /// Metres.
     translations: Vec<Vec3>,
+    /// How high the lowest point of the body is above the ground, metres: 0 but in flight.
+    lifts_m: Vec<f32>,
     /// How far a loop comes in one round, metres.
     per_round: Vec3,
 }
@@ -73,33 +75,32 @@ impl GroundTrack {
         let is_loop = matches!(path.repeat(), Repeat::Loop { .. });
         let carried = horizontal_velocities(&steps, &times_s, &intervals, &stance);
         let lifts = flight::lifts(&carried, &times_s, stance.height_m, is_loop);
-        let heights = steps
-            .iter()
-            .zip(lifts)
-            .map(|(step, lift)| lift - step.lowest_m);
+        let lowest_m = steps.iter().map(|step| step.lowest_m);
         let velocities = flight::filled(&carried, is_loop);
         let first_key = path.knot_time_s(0);
-        Ok(Self::new(times_s, heights, &velocities, first_key))
+        Ok(Self::new(times_s, lowest_m, lifts, &velocities, first_key))
     }
 
     /// Adds up velocities, so that the first key is above the origin.
     fn new(
         times_s: Vec<f32>,
-        heights_m: impl Iterator<Item = f32>,
+        lowest_m: impl Iterator<Item = f32>,
+        lifts_m: Vec<f32>,
         velocities: &[Vec2],
         origin_s: f32,
     ) -> Self {
         let mut at = Vec2::ZERO;
         let mut translations = Vec::with_capacity(times_s.len());
-        for (index, height_m) in heights_m.enumerate() {
+        for (index, (lowest_m, lift_m)) in lowest_m.zip(&lifts_m).enumerate() {
             if let Some(before) = index.checked_sub(1) {
                 at += velocities[before] * (times_s[index] - times_s[before]);
             }
-            translations.push(Vec3::new(at.x, height_m, at.y));
+            translations.push(Vec3::new(at.x, lift_m - lowest_m, at.y));
         }
         let mut track = Self {
             times_s,
             translations,
+            lifts_m,
             per_round: Vec3::ZERO,
         };
         let start = track.at(origin_s) * Vec3::new(1.0, 0.0, 1.0);
@@ -115,16 +116,29 @@ impl GroundTrack {
         self.at(path_s) + rounds * self.per_round
     }
 
+    /// How high the lowest point is above the ground at a time on the path, metres.
+    pub(super) fn lift_m(&self, path_s: f32) -> f32 {
+        let (before, after, share) = self.between(path_s);
+        let (from, to) = (self.lifts_m[before], self.lifts_m[after]);
+        from + share * (to - from)
+    }
+
     fn at(&self, path_s: f32) -> Vec3 {
+        let (before, after, share) = self.between(path_s);
+        self.translations[before].lerp(self.translations[after], share)
+    }
+
+    /// The steps of the table before and after a time on the path, and the share of the way between them.
+    fn between(&self, path_s: f32) -> (usize, usize, f32) {
         let after = self.times_s.partition_point(|t| *t <= path_s);
         let last = self.times_s.len().saturating_sub(1);
         let (before, after) = (after.saturating_sub(1), after.min(last));
         let span = self.times_s[after] - self.times_s[before];
         if span <= 0.0 {
-            return self.translations[before];
+            return (before, before, 0.0);
         }
-        let share = ((path_s - self.times_s[before]) / span).clamp(0.0, 1.0);
-        self.translations[before].lerp(self.translations[after], share)
+        let share = (path_s - self.times_s[before]) / span;
+        (before, after, share.clamp(0.0, 1.0))
     }
 }
 

@@ -133,6 +133,14 @@ impl Motion {
         Some(ground.translation(path_s, rounds))
     }
 
+    /// How high the lowest point of the body is above the ground at a time, metres: 0 but while a runner flies. `None` as for
+    /// [`Motion::root_translation`], whose height it is part of.
+    #[must_use]
+    pub fn lift_m(&self, time_s: f32) -> Option<f32> {
+        let ground = self.ground.as_ref().filter(|_| time_s.is_finite())?;
+        Some(ground.lift_m(self.path.course().place(time_s).0))
+    }
+
     /// How far the body at a time is to be trusted, between 0 and 1; see [`Trust::value`](super::Trust::value). Edges may be
     /// as long as in the keys. For a time that is not finite, 0.
     #[must_use]

@@ -60,7 +60,8 @@ fn a_walk_goes_forward_on_planted_feet() {
     }
     let track = GroundTrack::new(
         times_s,
-        steps.iter().map(|step| -step.lowest_m),
+        steps.iter().map(|step| step.lowest_m),
+        vec![0.0; steps.len()],
         &velocities,
         0.0,
     );
