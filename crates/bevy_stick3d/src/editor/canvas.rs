@@ -7,7 +7,7 @@ use bevy_egui::egui::{
     Align2, Color32, CornerRadius, Galley, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2,
     vec2,
 };
-use stick3d_figure::{Figure, Side};
+use stick3d_figure::{Figure, Side, Sketch};
 
 use super::theme::{self, faded, side_color};
 use super::words::{Words, capitalised};
@@ -26,12 +26,31 @@ const LOW: f32 = 340.0;
 const WORDS_HEIGHT: f32 = 78.0;
 const HEADLINE_HEIGHT: f32 = 50.0;
 
-/// The part of the card that is drawn on.
-pub(super) fn drawing_area(card: Rect) -> Rect {
-    let words = if card.height() < LOW {
-        HEADLINE_HEIGHT
-    } else {
-        WORDS_HEIGHT
+/// The same of a card beside another.
+const SMALL_WORDS_HEIGHT: f32 = 60.0;
+
+/// A card with a drawing on it.
+pub(super) struct Card<'a> {
+    /// Where it is.
+    pub(super) rect: Rect,
+    /// What is drawn on it.
+    pub(super) drawing: &'a SketchDrawing,
+    /// What it says.
+    pub(super) words: &'a Words,
+    /// One of several: with less space for words.
+    pub(super) is_small: bool,
+    /// Whether the body follows it.
+    pub(super) is_selected: bool,
+    /// The drawing before it, shown faintly under it.
+    pub(super) before: Option<&'a Sketch>,
+}
+
+/// The part of a card that is drawn on.
+pub(super) fn drawing_area(card: Rect, is_small: bool) -> Rect {
+    let words = match (is_small, card.height() < LOW) {
+        (true, _) => SMALL_WORDS_HEIGHT,
+        (false, true) => HEADLINE_HEIGHT,
+        (false, false) => WORDS_HEIGHT,
     };
     card.with_min_y(card.min.y + words.min(card.height() / 4.0))
 }
@@ -58,17 +77,21 @@ impl ToScreen {
     }
 }
 
-/// Paints the whole card of the canvas. `pulse` goes from 0 to 1 and back.
-pub(super) fn paint(
-    painter: &Painter,
-    rect: Rect,
-    drawing: &SketchDrawing,
-    words: &Words,
-    pulse: f32,
-) {
-    let to_screen = ToScreen::new(drawing_area(rect));
-    let header = Header::of(painter, rect, drawing, words);
+/// Paints the whole card of a canvas. `pulse` goes from 0 to 1 and back.
+pub(super) fn paint(painter: &Painter, card: &Card, pulse: f32) {
+    let (rect, drawing) = (card.rect, card.drawing);
+    let to_screen = ToScreen::new(drawing_area(rect, card.is_small));
+    let header = Header::of(painter, card);
     paper(painter, rect, header.bottom);
+    if card.is_small && card.is_selected {
+        let corners = CornerRadius::from(theme::CARD_RADIUS);
+        let edge = Stroke::new(2.0, theme::ACCENT);
+        painter.rect_stroke(rect, corners, edge, StrokeKind::Inside);
+    }
+    let painter = &painter.with_clip_rect(painter.clip_rect().intersect(rect));
+    if let Some(before) = card.before {
+        shade(painter, to_screen, drawing.figure(), before.points());
+    }
     match drawing.sketch() {
         Some(sketch) => {
             ink(painter, to_screen, drawing, 0.10);
@@ -78,7 +101,9 @@ pub(super) fn paint(
             guide(painter, to_screen, drawing);
             recognised(painter, to_screen, drawing);
             ink(painter, to_screen, drawing, 0.92);
-            next_joint(painter, to_screen, drawing, pulse);
+            if card.is_selected {
+                next_joint(painter, to_screen, drawing, pulse);
+            }
         }
     }
     if let Some(stroke) = drawing.pen_stroke() {
@@ -125,25 +150,38 @@ struct Header {
 }
 
 impl Header {
-    fn of(painter: &Painter, rect: Rect, drawing: &SketchDrawing, words: &Words) -> Self {
+    fn of(painter: &Painter, card: &Card) -> Self {
+        let (rect, drawing, words) = (card.rect, card.drawing, card.words);
         let margin = MARGIN.min(rect.width() / 12.0);
         let width = (rect.width() - 2.0 * margin).max(1.0);
-        let font = if rect.width() < NARROW {
+        let font = if card.is_small || rect.width() < NARROW {
             theme::small_headline()
         } else {
             theme::headline()
         };
-        let left = rect.min + vec2(margin, margin - 4.0);
+        let (top, between) = if card.is_small {
+            (10.0, 0.0)
+        } else {
+            (margin - 4.0, 4.0)
+        };
+        let left = rect.min + vec2(margin, top);
         let headline = painter.layout(capitalised(&words.headline), font, theme::INK, width);
         let mut bottom = left.y + headline.size().y;
-        let hint = (rect.height() >= LOW && !words.hint.is_empty()).then(|| {
-            let hint = painter.layout(words.hint.clone(), theme::body(), theme::INK_SOFT, width);
-            let at = pos2(left.x, bottom + 4.0);
+        let has_room = card.is_small || rect.height() >= LOW;
+        let hint = (has_room && !words.hint.is_empty()).then(|| {
+            let font = if card.is_small {
+                theme::small()
+            } else {
+                theme::body()
+            };
+            let hint = painter.layout(words.hint.clone(), font, theme::INK_SOFT, width);
+            let at = pos2(left.x, bottom + between);
             bottom = at.y + hint.size().y;
             (at, hint)
         });
         let rail = drawing.sketch().is_none().then(|| {
-            let rail = Rect::from_min_size(pos2(left.x, bottom + 12.0), vec2(width, 4.0));
+            let space = if card.is_small { 6.0 } else { 12.0 };
+            let rail = Rect::from_min_size(pos2(left.x, bottom + space), vec2(width, 4.0));
             bottom = rail.max.y;
             rail
         });
@@ -168,8 +206,17 @@ impl Header {
     }
 }
 
+/// The drawing before this one, as if the paper let it shine through.
+fn shade(painter: &Painter, to_screen: ToScreen, figure: &Figure, points: &[Vec2]) {
+    for &[a, b] in &figure.bones {
+        let color = mixed_with_paper(side_color(bone_side(figure, [a, b])), 0.13);
+        let ends = [points[a], points[b]].map(|p| to_screen.point(p));
+        round_line(painter, ends, 5.0 * to_screen.size(), color);
+    }
+}
+
 /// The side a bone is on: that of its outer end.
-fn bone_side(figure: &Figure, bone: [usize; 2]) -> Side {
+pub(super) fn bone_side(figure: &Figure, bone: [usize; 2]) -> Side {
     match figure.joints[bone[1]].side {
         Side::Center => figure.joints[bone[0]].side,
         side => side,
