@@ -9,7 +9,7 @@ const EXIT_CODES: &str = "Exit codes:
   0  done
   1  something else failed (the message says what)
   2  the command line is wrong
-  3  a sketch or other input file is wrong
+  3  a sketch, clip or other input file is wrong
   4  a model file is wrong
   5  an output could not be written; nothing half-written is left";
 
@@ -29,6 +29,12 @@ pub(crate) enum Command {
         after_help = "Example:\n  stick3d pose --sketch assets/sketches/walk.json --out walk.glb"
     )]
     Pose(PoseArguments),
+    /// Makes a moving body of two or more sketches
+    #[command(after_help = "Examples:\n  \
+                      stick3d animate --sketch assets/sketches/standing.json --sketch assets/sketches/wave.json \\\n    \
+                      --seconds 0.8 --past 0.5 --out wave.glb\n  \
+                      stick3d animate --clip walk.clip.ron --repeat loop --format obj-sequence --out walk")]
+    Animate(AnimateArguments),
     /// Trains a model from a rig and a pose library, or from registered meshes
     #[command(
         after_help = "Example, the shipped model:\n  stick3d train --out assets/models/human.stick3d\n\n\
@@ -70,6 +76,117 @@ pub(crate) struct PoseArguments {
     /// Prints figure, joints (metres, x right, y up, z toward the viewer), latent and times as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(group(clap::ArgGroup::new("keys").required(true).args(["sketch", "clip"])))]
+pub(crate) struct AnimateArguments {
+    /// A sketch file (JSON) that the motion goes through; give at least two, in order
+    #[arg(long, value_name = "FILE", requires = "seconds")]
+    pub(crate) sketch: Vec<PathBuf>,
+    /// From the first sketch to the last, seconds; the others are evenly spread between
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, conflicts_with = "clip")]
+    pub(crate) seconds: Option<f32>,
+    /// A clip file instead, with poses, times and all that the options below say if they are not given
+    #[arg(long, value_name = "FILE.clip.ron")]
+    pub(crate) clip: Option<PathBuf>,
+    /// How long the motion goes on after its last pose, seconds; one that repeats, after its first round
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    pub(crate) past: f32,
+    /// Frames a second
+    #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
+    pub(crate) fps: f32,
+    /// What is between two poses; linear without it
+    #[arg(long, value_enum)]
+    pub(crate) interpolation: Option<BetweenKeys>,
+    /// What comes after the last pose; a repeated motion is written for one round; once without it
+    #[arg(long, value_enum)]
+    pub(crate) repeat: Option<AfterKeys>,
+    /// What a motion that does not repeat does past its last pose; bounded without it
+    #[arg(long, value_enum)]
+    pub(crate) extrapolation: Option<BeyondKeys>,
+    /// Whether the body stands on the ground, and walks on it; on without it
+    #[arg(long, value_enum)]
+    pub(crate) grounded: Option<Switch>,
+    /// The model file; without it the built-in one of the figure
+    #[arg(long, value_name = "FILE")]
+    pub(crate) model: Option<PathBuf>,
+    /// What to write
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: ClipFormat,
+    /// Where to write it: a file that ends with .glb, or a new folder
+    #[arg(long, value_name = "FILE.glb|DIR")]
+    pub(crate) out: PathBuf,
+}
+
+/// What is between two keys.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub(crate) enum BetweenKeys {
+    /// The straight way through latent space
+    Linear,
+    /// A curve without kinks
+    Cubic,
+}
+
+/// What comes after the last key.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub(crate) enum AfterKeys {
+    /// Whatever the extrapolation says
+    Once,
+    /// On to the first pose
+    Loop,
+    /// Back the same way
+    PingPong,
+}
+
+/// What is beyond the last key.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub(crate) enum BeyondKeys {
+    /// Eases to a stop before the body breaks
+    Bounded,
+    /// Turns back before the body breaks
+    PingPong,
+    /// Goes on for ever
+    Unbounded,
+    /// Stays at the last pose
+    Hold,
+}
+
+/// Yes or no.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Switch {
+    /// Yes
+    On,
+    /// No
+    Off,
+}
+
+/// As what a motion is written.
+#[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
+pub(crate) enum ClipFormat {
+    /// One binary glTF: mesh, morph targets and an animation
+    #[default]
+    Glb,
+    /// A folder of numbered OBJ meshes
+    ObjSequence,
+    /// A folder of numbered pictures, all seen from one place
+    PngSequence,
+}
+
+/// A duration that is above zero.
+fn seconds(text: &str) -> Result<f32, String> {
+    let seconds: f32 = text
+        .parse()
+        .map_err(|_| "give a number of seconds".to_owned())?;
+    if seconds.is_finite() && seconds > 0.0 {
+        return Ok(seconds);
+    }
+    Err("a motion takes time: give more than 0 seconds".to_owned())
 }
 
 /// A rigged body with its poses.

@@ -1,17 +1,14 @@
 //! `stick3d bake`: the shipped bodies and pictures from their sources.
 
-use std::io::Cursor;
 use std::path::Path;
 
-use anyhow::Context as _;
-use image::{ImageFormat, RgbaImage};
-use stick3d_model::files::write_atomically;
 use stick3d_train::bake::{BakeError, BakeReport, bake_horse, bake_human};
 use stick3d_train::pose::pose_sheet;
 
 use crate::args::BakeCommand;
 use crate::corpus::Corpus;
 use crate::failure::{Failure, Outcome};
+use crate::pictures::write_png;
 
 /// Edge of one picture of the contact sheet, pixels.
 const SHEET_PICTURE_PX: u32 = 100;
@@ -45,13 +42,4 @@ fn told(out: &Path, baked: Result<BakeReport, BakeError>) -> Outcome {
     let report = baked.map_err(Failure::input)?;
     println!("{}: {report:?}", out.display());
     Ok(())
-}
-
-/// Writes a picture, whole or not at all.
-pub(crate) fn write_png(path: &Path, picture: &RgbaImage) -> Outcome {
-    let mut bytes = Cursor::new(Vec::new());
-    picture
-        .write_to(&mut bytes, ImageFormat::Png)
-        .context("cannot encode the picture")?;
-    write_atomically(path, bytes.get_ref()).map_err(Failure::output)
 }

@@ -14,7 +14,15 @@ pub(crate) struct Failure {
 pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 
 impl Failure {
-    /// A sketch, rig, pose or figure file is wrong.
+    /// The command line is wrong, in a way that its parser does not see.
+    pub(crate) fn usage(error: impl Into<anyhow::Error>) -> Self {
+        Self {
+            code: 2,
+            error: error.into(),
+        }
+    }
+
+    /// A sketch, clip, rig, pose or figure file is wrong.
     pub(crate) fn input(error: impl Into<anyhow::Error>) -> Self {
         Self {
             code: 3,

@@ -17,15 +17,19 @@ const EMBEDDED: [(&str, &[u8]); 2] = [
 ];
 
 /// The built-in model of the figure that the bytes of a sketch file name.
-pub(crate) fn embedded_model(sketch: &[u8]) -> Outcome<Model> {
-    let figure = figure_name(sketch).map_err(Failure::input)?;
+pub(crate) fn embedded_model_of_sketch(sketch: &[u8]) -> Outcome<Model> {
+    embedded_model(&figure_name(sketch).map_err(Failure::input)?)
+}
+
+/// The built-in model of a figure.
+pub(crate) fn embedded_model(figure: &str) -> Outcome<Model> {
     let known = EMBEDDED.map(|(name, _)| name);
     match EMBEDDED.iter().find(|(name, _)| *name == figure) {
         Some((_, bytes)) => Model::from_bytes(bytes).map_err(Failure::model),
         None => Err(Failure::input(anyhow::anyhow!(
             "no model of figure \"{}\" is built in; {} For a figure of your own, name its model file with --model",
             figure.chars().take(64).collect::<String>(),
-            match nearest(&figure, known) {
+            match nearest(figure, known) {
                 Some(name) => format!("did you mean \"{name}\"?"),
                 None => format!("there are: {}.", known.join(", ")),
             },

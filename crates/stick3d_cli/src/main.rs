@@ -1,10 +1,11 @@
-//! The `stick3d` command: poses a body after a sketch; bakes, trains and measures what it needs for that.
+//! The `stick3d` command: poses and moves bodies after sketches; bakes, trains and measures what it needs for that.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
     reason = "a command talks to its terminal"
 )]
 
+mod animate;
 mod args;
 mod bake;
 mod corpus;
@@ -14,6 +15,7 @@ mod failure;
 mod figure;
 mod inputs;
 mod mesh_set;
+mod pictures;
 mod pose;
 mod progress;
 mod train;
@@ -27,6 +29,7 @@ use args::{Arguments, Command};
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Pose(arguments) => pose::run(&arguments),
+        Command::Animate(arguments) => animate::run(&arguments),
         Command::Train(arguments) => train::run(&arguments),
         Command::Eval(arguments) => eval::run(&arguments),
         Command::Figure(command) => figure::run(&command),

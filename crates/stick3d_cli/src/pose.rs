@@ -9,17 +9,11 @@ use stick3d_figure::figure::Figure;
 use stick3d_figure::sketch::Sketch;
 use stick3d_model::export::{ExportError, ExportMesh, MeshFormat, save_mesh};
 use stick3d_model::{Inference, Model};
-use stick3d_train::render::{Camera, RenderMesh, render};
 
 use crate::args::PoseArguments;
-use crate::bake::write_png;
 use crate::failure::{Failure, Outcome};
 use crate::inputs;
-
-/// The longer and the shorter side of a picture, pixels.
-const PICTURE_PX: [u32; 2] = [1000, 800];
-/// Where a picture is taken from: a little from the body's left and from above, radians.
-const PICTURE_YAW_PITCH_RAD: (f32, f32) = (0.3, 0.16);
+use crate::pictures::{Stage, write_png};
 
 /// Runs `stick3d pose`.
 pub(crate) fn run(arguments: &PoseArguments) -> Outcome {
@@ -30,7 +24,7 @@ pub(crate) fn run(arguments: &PoseArguments) -> Outcome {
         |failure: Failure| failure.context(format!("cannot use {}", arguments.sketch.display()));
     let model = match &arguments.model {
         Some(path) => inputs::model(Some(path))?,
-        None => inputs::embedded_model(&bytes).map_err(unusable)?,
+        None => inputs::embedded_model_of_sketch(&bytes).map_err(unusable)?,
     };
     let sketch = Sketch::from_json(model.figure(), &bytes)
         .map_err(|error| unusable(Failure::input(error)))?;
@@ -144,41 +138,10 @@ impl<'a> Output<'a> {
                     other => Failure::output(other),
                 })
             }
-            Self::Picture(path) => write_png(path, &picture(model, body)),
+            Self::Picture(path) => {
+                let stage = Stage::holding(&body.positions);
+                write_png(path, &stage.picture(model, &body.positions, &body.normals))
+            }
         }
-    }
-}
-
-fn picture(model: &Model, body: &Body) -> image::RgbaImage {
-    let positions: Vec<Vec3> = body.positions.iter().copied().map(Vec3::from).collect();
-    let normals: Vec<Vec3> = body.normals.iter().copied().map(Vec3::from).collect();
-    let mesh = RenderMesh {
-        positions: &positions,
-        normals: &normals,
-        colors: model.colors(),
-        triangles: model.triangles(),
-    };
-    let (yaw_rad, pitch_rad) = PICTURE_YAW_PITCH_RAD;
-    let [width, height] = picture_size(&positions);
-    let camera = Camera::framing(&positions, yaw_rad, pitch_rad, width as f32 / height as f32);
-    render(&[mesh], &camera, width, height)
-}
-
-/// Width and height of a picture, pixels: lying for a body that is longer than high, else standing.
-fn picture_size(positions: &[Vec3]) -> [u32; 2] {
-    let extent = |axis: fn(&Vec3) -> f32| {
-        let (low, high) = positions
-            .iter()
-            .map(axis)
-            .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), at| {
-                (low.min(at), high.max(at))
-            });
-        high - low
-    };
-    let [long, short] = PICTURE_PX;
-    if extent(|p| p.x) > extent(|p| p.y) {
-        [long, short]
-    } else {
-        [short, long]
     }
 }

@@ -1,4 +1,4 @@
-//! A binary glTF 2.0 file while it grows: meshes, rigs and clips are all written through it.
+//! A binary glTF 2.0 file while it grows: meshes, rigs, motions and clips are all written through it.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use gltf::binary::{Glb, Header};
 use gltf::json;
 use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
+use gltf::json::animation::{Channel, Interpolation, Property, Sampler};
 use gltf::json::buffer::Target;
 use gltf::json::mesh::Semantic;
 use gltf::json::validation::{Checked, USize64};
@@ -60,6 +61,17 @@ impl Layout {
         self.bounds = Some((low.to_vec(), high.to_vec()));
         self
     }
+}
+
+/// How one property of a node changes in an animation.
+#[derive(Debug, Clone)]
+pub struct Track {
+    /// Whose.
+    pub node: json::Index<json::Node>,
+    /// Which.
+    pub property: Property,
+    /// Its values one after the other, those of the first time first.
+    pub values: Vec<f32>,
 }
 
 /// The two chunks of the file: a description, and one buffer of bytes. The same calls give the same bytes.
@@ -183,6 +195,73 @@ impl GltfFile {
             }],
             weights: None,
         })
+    }
+
+    /// Gives a mesh of one primitive its morph targets, which viewers that know names show by name. All weigh nothing
+    /// until a node or an animation says otherwise.
+    pub fn morph(
+        &mut self,
+        mesh: json::Index<json::Mesh>,
+        targets: Vec<json::mesh::MorphTarget>,
+        names: &[String],
+    ) {
+        let mesh = &mut self.root.meshes[mesh.value()];
+        mesh.weights = Some(vec![0.0; targets.len()]);
+        mesh.extras = json::serialize::to_string(&BTreeMap::from([("targetNames", names)]))
+            .and_then(json::extras::RawValue::from_string)
+            .ok();
+        for primitive in &mut mesh.primitives {
+            primitive.targets = Some(targets.clone());
+        }
+    }
+
+    /// An animation, straight between the times (seconds, rising, the first 0). One without tracks is not written: glTF
+    /// knows none.
+    pub fn animation(&mut self, name: &str, times_s: &[f32], tracks: Vec<Track>) {
+        if tracks.is_empty() {
+            return;
+        }
+        let end_s = times_s.last().copied().unwrap_or(0.0);
+        let layout = Layout::data(Type::Scalar, ComponentType::F32, times_s.len());
+        let input = self.accessor(
+            bytemuck::cast_slice(times_s),
+            layout.bounded(&[0.0], &[end_s]),
+        );
+        let mut animation = json::Animation {
+            channels: Vec::new(),
+            samplers: Vec::new(),
+            extensions: None,
+            extras: None,
+            name: Some(name.to_owned()),
+        };
+        for track in tracks {
+            let (shape, width) = match track.property {
+                Property::Translation | Property::Scale => (Type::Vec3, 3),
+                Property::Rotation => (Type::Vec4, 4),
+                Property::MorphTargetWeights => (Type::Scalar, 1),
+            };
+            let layout = Layout::data(shape, ComponentType::F32, track.values.len() / width);
+            let output = self.accessor(bytemuck::cast_slice(&track.values), layout);
+            animation.samplers.push(Sampler {
+                input,
+                interpolation: Checked::Valid(Interpolation::Linear),
+                output,
+                extensions: None,
+                extras: None,
+            });
+            animation.channels.push(Channel {
+                sampler: json::Index::new(animation.samplers.len() as u32 - 1),
+                target: json::animation::Target {
+                    node: track.node,
+                    path: Checked::Valid(track.property),
+                    extensions: None,
+                    extras: None,
+                },
+                extensions: None,
+                extras: None,
+            });
+        }
+        self.root.push(animation);
     }
 
     /// Makes `nodes` the roots of the scene that viewers show.

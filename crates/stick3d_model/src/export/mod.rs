@@ -1,7 +1,8 @@
-//! Writing meshes for other programs: binary glTF, OBJ, PLY, OFF.
+//! Writing meshes for other programs: binary glTF, OBJ, PLY, OFF; and [motions](animation).
 //!
 //! All have metres, +y up, and the triangles' order of corners counter-clockwise seen from outside.
 
+pub mod animation;
 mod glb;
 pub mod gltf_file;
 mod text;

@@ -1,0 +1,149 @@
+//! A motion that `stick3d animate` exported, played by Bevy alone: a game that only plays needs neither model nor plugin.
+//!
+//! `cargo run --release --example play_glb -- walk.glb`
+//! `cargo run --release --example play_glb -- walk.glb --at 0.5 --screenshot walk.png`
+
+mod scene;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use bevy::camera::primitives::Aabb;
+use bevy::gltf::GltfAssetLabel;
+use bevy::mesh::morph::MeshMorphWeights;
+use bevy::prelude::*;
+use bevy::world_serialization::WorldInstanceReady;
+use bevy_stick3d::launch::{Launch, LaunchError};
+use bevy_stick3d::prelude::FigureStatus;
+use clap::Parser;
+
+/// Plays the animation of a glTF file over and over.
+#[derive(Parser)]
+struct Arguments {
+    /// The file, as `stick3d animate` writes it.
+    #[arg(value_name = "CLIP.glb")]
+    clip: PathBuf,
+    /// Hold the animation at this time, seconds.
+    #[arg(long, value_name = "SECONDS")]
+    at: Option<f32>,
+    /// Take a picture without opening a window, and end.
+    #[arg(long, value_name = "OUT.png")]
+    screenshot: Option<PathBuf>,
+}
+
+/// What is played when the scene is there.
+#[derive(Component)]
+struct ToPlay {
+    graph: Handle<AnimationGraph>,
+    node: AnimationNodeIndex,
+    hold_s: Option<f32>,
+}
+
+fn main() -> ExitCode {
+    match run(Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // There is nowhere left to say it when this fails too.
+            let _ = writeln!(std::io::stderr(), "play_glb: {error:#}");
+            let code = error.downcast_ref().map_or(1, LaunchError::exit_code);
+            ExitCode::from(code)
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> anyhow::Result<()> {
+    let (folder, file) = asset_place(&arguments.clip)?;
+    let launch = Launch {
+        title: format!("stick3d: {file}"),
+        size_px: UVec2::new(1280, 720),
+        screenshot: arguments.screenshot,
+        asset_folder: Some(folder),
+    };
+    let spawn = move |mut commands: Commands,
+                      assets: Res<AssetServer>,
+                      mut graphs: ResMut<Assets<AnimationGraph>>| {
+        let clip = assets.load(GltfAssetLabel::Animation(0).from_asset(file.clone()));
+        let (graph, node) = AnimationGraph::from_clip(clip);
+        commands
+            .spawn((
+                WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset(file.clone()))),
+                ToPlay {
+                    graph: graphs.add(graph),
+                    node,
+                    hold_s: arguments.at,
+                },
+                // A picture waits for it.
+                FigureStatus::Waiting,
+            ))
+            .observe(play);
+        commands.spawn((Camera3d::default(), Transform::default()));
+    };
+    launch.run(|app| {
+        app.add_systems(Startup, (scene::build, spawn))
+            .add_systems(Update, end_on_problem)
+            .add_systems(PostUpdate, follow.after(TransformSystems::Propagate));
+    })?;
+    Ok(())
+}
+
+/// The folder of a file, to load assets from, and its name in there.
+fn asset_place(file: &Path) -> anyhow::Result<(PathBuf, String)> {
+    let cannot = || format!("cannot read {}", file.display());
+    let file = std::fs::canonicalize(file).with_context(cannot)?;
+    let folder = file.parent().with_context(cannot)?;
+    let name = file.file_name().with_context(cannot)?;
+    Ok((folder.to_owned(), name.to_string_lossy().into_owned()))
+}
+
+fn play(
+    ready: On<WorldInstanceReady>,
+    mut commands: Commands,
+    children: Query<&Children>,
+    mut scenes: Query<(&ToPlay, &mut FigureStatus)>,
+    mut players: Query<&mut AnimationPlayer>,
+) {
+    let Ok((to_play, mut status)) = scenes.get_mut(ready.entity) else {
+        return;
+    };
+    *status = FigureStatus::Ready;
+    for child in children.iter_descendants(ready.entity) {
+        let Ok(mut player) = players.get_mut(child) else {
+            continue;
+        };
+        let animation = player.play(to_play.node);
+        match to_play.hold_s {
+            Some(time_s) => animation.seek_to(time_s).pause(),
+            None => animation.repeat(),
+        };
+        commands
+            .entity(child)
+            .insert(AnimationGraphHandle(to_play.graph.clone()));
+    }
+}
+
+/// A file that cannot be loaded has been logged by Bevy; there is nothing to look at.
+fn end_on_problem(
+    scenes: Query<&WorldAssetRoot>,
+    assets: Res<AssetServer>,
+    mut exit: MessageWriter<AppExit>,
+) {
+    let failed = |scene: &WorldAssetRoot| assets.load_state(scene.0.id()).is_failed();
+    if scenes.iter().any(failed) {
+        exit.write(AppExit::error());
+    }
+}
+
+/// Keeps the camera beside the body, wherever it walks.
+fn follow(
+    bodies: Query<(&Aabb, &GlobalTransform), With<MeshMorphWeights>>,
+    mut cameras: Query<&mut Transform, With<Camera3d>>,
+) {
+    for ((body, place), mut camera) in bodies.iter().zip(&mut cameras) {
+        let centre = place.transform_point(body.center.into());
+        let distance = 2.4 * Vec3::from(body.half_extents).length();
+        let from = Vec3::new(0.45, 0.28, 1.0).normalize() * distance;
+        *camera = Transform::from_translation(centre + from).looking_at(centre, Vec3::Y);
+    }
+}
