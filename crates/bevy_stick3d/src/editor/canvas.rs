@@ -1,7 +1,5 @@
 //! Painting the canvas: paper, the guide, the ink, the joints.
 
-use std::sync::Arc;
-
 use bevy::math::Vec2;
 use bevy_egui::egui::{
     Align2, Color32, CornerRadius, Galley, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2,
@@ -9,18 +7,13 @@ use bevy_egui::egui::{
 };
 use stick3d_figure::{Figure, Side, Sketch};
 
+use super::header::Header;
 use super::theme::{self, faded, side_color};
-use super::words::{Words, capitalised};
+use super::words::Words;
 use crate::sketch_input::{SketchDrawing, screen_from_canvas};
 
-/// Space between the card's edge and its words, points.
-const MARGIN: f32 = 24.0;
-
-/// Narrower cards have smaller words.
-const NARROW: f32 = 420.0;
-
 /// Lower cards have no room for hints.
-const LOW: f32 = 340.0;
+pub(super) const LOW: f32 = 340.0;
 
 /// What the words take of a card, with and without hints, points: nothing is drawn there.
 const WORDS_HEIGHT: f32 = 78.0;
@@ -28,6 +21,9 @@ const HEADLINE_HEIGHT: f32 = 50.0;
 
 /// The same of a card beside another.
 const SMALL_WORDS_HEIGHT: f32 = 60.0;
+
+/// And what is kept free under the drawing there.
+const SMALL_MARGIN: f32 = 12.0;
 
 /// A card with a drawing on it.
 pub(super) struct Card<'a> {
@@ -52,7 +48,12 @@ pub(super) fn drawing_area(card: Rect, is_small: bool) -> Rect {
         (false, true) => HEADLINE_HEIGHT,
         (false, false) => WORDS_HEIGHT,
     };
-    card.with_min_y(card.min.y + words.min(card.height() / 4.0))
+    let area = card.with_min_y(card.min.y + words.min(card.height() / 4.0));
+    if is_small {
+        area.with_max_y(area.max.y - SMALL_MARGIN)
+    } else {
+        area
+    }
 }
 
 /// Turns canvas units into egui points.
@@ -137,73 +138,6 @@ fn paper(painter: &Painter, rect: Rect, words_bottom: f32) {
         Stroke::new(1.0, theme::HAIRLINE),
         StrokeKind::Inside,
     );
-}
-
-/// The words at the top of the card, laid out.
-struct Header {
-    headline: (Pos2, Arc<Galley>),
-    hint: Option<(Pos2, Arc<Galley>)>,
-    /// How far the drawing has come, while it is not finished.
-    rail: Option<Rect>,
-    /// Where the words end.
-    bottom: f32,
-}
-
-impl Header {
-    fn of(painter: &Painter, card: &Card) -> Self {
-        let (rect, drawing, words) = (card.rect, card.drawing, card.words);
-        let margin = MARGIN.min(rect.width() / 12.0);
-        let width = (rect.width() - 2.0 * margin).max(1.0);
-        let font = if card.is_small || rect.width() < NARROW {
-            theme::small_headline()
-        } else {
-            theme::headline()
-        };
-        let (top, between) = if card.is_small {
-            (10.0, 0.0)
-        } else {
-            (margin - 4.0, 4.0)
-        };
-        let left = rect.min + vec2(margin, top);
-        let headline = painter.layout(capitalised(&words.headline), font, theme::INK, width);
-        let mut bottom = left.y + headline.size().y;
-        let has_room = card.is_small || rect.height() >= LOW;
-        let hint = (has_room && !words.hint.is_empty()).then(|| {
-            let font = if card.is_small {
-                theme::small()
-            } else {
-                theme::body()
-            };
-            let hint = painter.layout(words.hint.clone(), font, theme::INK_SOFT, width);
-            let at = pos2(left.x, bottom + between);
-            bottom = at.y + hint.size().y;
-            (at, hint)
-        });
-        let rail = drawing.sketch().is_none().then(|| {
-            let space = if card.is_small { 6.0 } else { 12.0 };
-            let rail = Rect::from_min_size(pos2(left.x, bottom + space), vec2(width, 4.0));
-            bottom = rail.max.y;
-            rail
-        });
-        Self {
-            headline: (left, headline),
-            hint,
-            rail,
-            bottom,
-        }
-    }
-
-    fn paint(self, painter: &Painter, drawing: &SketchDrawing) {
-        for (at, galley) in std::iter::once(self.headline).chain(self.hint) {
-            painter.galley(at, galley, theme::INK);
-        }
-        if let Some(rail) = self.rail {
-            painter.rect_filled(rail, CornerRadius::same(2), theme::HAIRLINE);
-            let mut done = rail;
-            done.set_width(rail.width() * drawing.live_progress().fraction);
-            painter.rect_filled(done, CornerRadius::same(2), theme::ACCENT);
-        }
-    }
 }
 
 /// The drawing before this one, as if the paper let it shine through.
@@ -404,11 +338,16 @@ fn side_letters(
         let inner = points[if bone[0] == joint { bone[1] } else { bone[0] }];
         let end = to_screen.point(*point);
         let outward = (end - to_screen.point(inner)).normalized();
+        let (distance, font) = if to_screen.size() < 0.75 {
+            (15.0, theme::small())
+        } else {
+            (24.0 * to_screen.size(), theme::body())
+        };
         painter.text(
-            end + outward * 24.0 * to_screen.size(),
+            end + outward * distance,
             Align2::CENTER_CENTER,
             letter,
-            theme::body(),
+            font,
             mixed_with_paper(side_color(side), opacity),
         );
     }

@@ -13,7 +13,7 @@ const ROW_GAP: f32 = 10.0;
 const FILES_WIDTH: f32 = 230.0;
 /// The timeline's share of the window's height, and its limits, points.
 const TIMELINE_SHARE: f32 = 0.19;
-const TIMELINE_HEIGHT: [f32; 2] = [112.0, 160.0];
+const TIMELINE_HEIGHT: [f32; 2] = [126.0, 160.0];
 /// Two canvases beside each other are at least so wide, points; else there is one at a time.
 const LEAST_PAIR: f32 = 230.0;
 /// Between them, points.

@@ -7,6 +7,7 @@
 
 mod canvas;
 mod files;
+mod header;
 mod layout;
 mod orbit;
 mod panels;

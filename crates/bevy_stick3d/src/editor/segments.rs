@@ -75,7 +75,10 @@ impl Segments<'_> {
     /// Only that which holds. A click asks for the next one.
     pub(super) fn show_one(&self, ui: &mut Ui) -> Option<usize> {
         let word = self.words.get(self.active)?;
-        let button = egui::Button::new(*word).min_size(vec2(0.0, HEIGHT));
+        let text = egui::RichText::new(*word).font(theme::small());
+        let button = egui::Button::new(text)
+            .fill(theme::faded(theme::TRACK, 0.6))
+            .min_size(vec2(0.0, HEIGHT));
         let clicked = ui.add(button).on_hover_text(self.about).clicked();
         clicked.then(|| (self.active + 1) % self.words.len())
     }

@@ -44,9 +44,11 @@ pub(super) struct ViewCamera;
 const STAGE_EXTENTS_M: [f32; 2] = [0.35, 2.5];
 
 /// The bodies of the keys before and after: warm is past, cool is to come.
-const GHOST_BEFORE: Srgba = Srgba::rgb(0.83, 0.62, 0.48);
+const GHOST_BEFORE: Srgba = Srgba::rgb(0.78, 0.52, 0.37);
 const GHOST_AFTER: Srgba = Srgba::rgb(0.42, 0.66, 0.72);
 const GHOST_OPACITY: f32 = 0.45;
+/// Ghosts are drawn as if they were some decimetres farther away: where they are inside the body, only the body is seen.
+const GHOST_DEPTH_BIAS: f32 = -900_000.0;
 
 /// A figure that is drawn, and how it is looked at.
 #[derive(Component)]
@@ -188,6 +190,7 @@ fn dress_ghosts(
             perceptual_roughness: 1.0,
             reflectance: 0.0,
             alpha_mode: AlphaMode::AlphaToCoverage,
+            depth_bias: GHOST_DEPTH_BIAS,
             ..figure_material()
         })
     };

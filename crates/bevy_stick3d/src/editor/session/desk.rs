@@ -53,6 +53,11 @@ impl Desk<'_, '_> {
             .map(|(_, drawing)| drawing)
     }
 
+    /// The networks of a body's model, once they are ready.
+    pub(super) fn ready_model(&self, body: Entity) -> Option<&ReadyModel> {
+        self.inference.get(&self.models.get(body).ok()?.0)
+    }
+
     /// The body that is shown, to look at it from elsewhere.
     pub(in super::super) fn edited_mut(&mut self) -> Option<Mut<'_, EditedFigure>> {
         self.figures.get_mut(self.session.body()?).ok()
@@ -77,6 +82,7 @@ impl Desk<'_, '_> {
             Action::Mirror | Action::Clear => self.change_drawing(action),
             Action::Ghosts => self.session.shows_ghosts ^= true,
             Action::KeyHere => self.key_here(),
+            Action::Export => self.export(),
             _ => self.edit_timeline(action),
         }
         self.lay_out(false);
@@ -201,8 +207,8 @@ impl Desk<'_, '_> {
             return;
         };
         let figure = self.models.get(choice.body).ok();
-        let ready = figure.and_then(|figure| self.inference.get_mut(&figure.0));
-        let made = ready
+        let made = figure
+            .and_then(|figure| self.inference.get_mut(&figure.0))
             .ok_or_else(|| "The model is not ready yet".to_owned())
             .and_then(|ready| key_of_present(choice, ready));
         let (time_s, ink) = match made {

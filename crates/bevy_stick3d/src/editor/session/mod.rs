@@ -2,6 +2,7 @@
 //! Knows no user interface.
 
 mod desk;
+mod export;
 mod open;
 mod settle;
 
@@ -13,6 +14,7 @@ use stick3d_figure::{Figure, Sketch};
 use stick3d_model::latent::{Easing, Interpolation, Repeat};
 
 pub(super) use self::desk::Desk;
+use self::export::{Export, finish_export};
 pub(super) use self::open::read_clip;
 use super::status_line::StatusLine;
 use super::timeline::history::Document;
@@ -126,6 +128,8 @@ pub(super) enum Action {
     Repeat(Repeat),
     /// Shows or hides the bodies of the neighbouring keys.
     Ghosts,
+    /// The motion as a file for other programs.
+    Export,
 }
 
 /// A canvas, and the key that is drawn on it.
@@ -206,6 +210,8 @@ pub(super) struct Session {
     mode: Mode,
     /// Whether the bodies of the neighbouring keys are shown.
     pub(super) shows_ghosts: bool,
+    /// A motion that is being written.
+    export: Option<Export>,
     /// What was done last.
     pub(super) status: StatusLine,
     /// Whether a file is being dragged over the window.
@@ -288,7 +294,7 @@ impl Plugin for SessionPlugin {
             .init_resource::<Session>()
             .add_message::<FileDragAndDrop>()
             .add_systems(Startup, (spawn_choices, lay_out).chain())
-            .add_systems(Update, take_dropped_files)
+            .add_systems(Update, (take_dropped_files, finish_export))
             .add_systems(
                 PostUpdate,
                 (

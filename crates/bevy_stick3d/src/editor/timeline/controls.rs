@@ -15,7 +15,7 @@ pub(crate) const ROW_HEIGHT: f32 = 32.0;
 /// Between its parts, points.
 const SPACE: f32 = 6.0;
 /// What the buttons and the time need beside the words to choose from, points.
-const BUTTONS_WIDTH: f32 = 400.0;
+const BUTTONS_WIDTH: f32 = 450.0;
 /// One press of an arrow key, seconds.
 const FRAME_S: f32 = 1.0 / 30.0;
 
@@ -203,14 +203,19 @@ fn button(ui: &mut Ui, words: &str, about: &str, is_enabled: bool) -> bool {
 
 fn key_buttons(ui: &mut Ui, choice: &Choice) -> Option<Action> {
     let can_move = choice.performance.course().is_some();
+    let about =
+        "Writes the motion from the first key to the last as a .glb file beside the clip file";
+    let export = button(ui, "Export", about, can_move);
     let remove = button(ui, "Remove", "Removes the selected key (Delete)", true);
     let about = "Makes a key of what the body shows at the playhead (K)";
     let here = button(ui, "Key here", about, can_move);
-    match (remove, here) {
-        (true, _) => Some(Action::RemoveKey),
-        (_, true) => Some(Action::KeyHere),
-        _ => None,
-    }
+    let clicked = [
+        (export, Action::Export),
+        (remove, Action::RemoveKey),
+        (here, Action::KeyHere),
+    ];
+    let mut clicked = clicked.into_iter();
+    clicked.find_map(|(is_clicked, action)| is_clicked.then_some(action))
 }
 
 fn ghosts_button(ui: &mut Ui, shows_ghosts: bool) -> Option<Action> {

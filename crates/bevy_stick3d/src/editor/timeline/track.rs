@@ -5,11 +5,11 @@ use bevy_egui::egui::{
     Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, pos2, vec2,
 };
 use stick3d_model::Motion;
-use stick3d_model::latent::{Easing, Extrapolation, Repeat};
+use stick3d_model::latent::{Extrapolation, Repeat};
 
 use super::super::session::{Action, Choice};
 use super::super::theme::{self, faded, side_color};
-use super::controls::next_easing;
+use super::easings;
 use super::scale::{TimeScale, span_s};
 use super::state::Key;
 use super::thumbnail::{LittleFigure, fitting_scale};
@@ -25,14 +25,12 @@ const THUMB_SHAPE: f32 = 0.86;
 const LEAST_THUMB: f32 = 18.0;
 /// Between two thumbnails, points.
 const THUMB_GAP: f32 = 4.0;
-/// Width and height of the sign of an easing, points.
-const CHIP: egui::Vec2 = vec2(26.0, 20.0);
 /// In so many steps is drawn how trust fades.
 const FADE_STEPS: usize = 48;
 
 /// Where everything of the track is.
-struct Places {
-    thumbs: Rect,
+pub(super) struct Places {
+    pub(super) thumbs: Rect,
     thumb: egui::Vec2,
     band: Rect,
     ruler: Rect,
@@ -70,7 +68,8 @@ impl Places {
         }
     }
 
-    fn thumb_at(&self, time_s: f32) -> Rect {
+    /// The thumbnail of a key at a time.
+    pub(super) fn thumb_at(&self, time_s: f32) -> Rect {
         let centre = pos2(self.scale.x_of(time_s), self.thumbs.center().y);
         Rect::from_center_size(centre, self.thumb)
     }
@@ -83,7 +82,7 @@ pub(crate) fn show(ui: &mut Ui, rect: Rect, choice: &Choice) -> Option<Action> {
     let scrubbed = scrub(ui, &places);
     paint_ruler(ui.painter(), &places);
     paint_band(ui.painter(), &places, choice);
-    let eased = easings(ui, &places, choice);
+    let eased = easings::show(ui, &places, choice);
     let moved = keys(ui, &places, choice);
     let added = add_key(ui, &places);
     paint_playhead(ui.painter(), &places, choice);
@@ -146,7 +145,8 @@ fn between(places: &Places, from_s: f32, to_s: f32) -> Rect {
 
 fn paint_band(painter: &Painter, places: &Places, choice: &Choice) {
     let round = CornerRadius::same((BAND / 2.0) as u8);
-    painter.rect_filled(places.band, round, faded(theme::TRACK, 0.55));
+    let line = Stroke::new(1.0, theme::HAIRLINE);
+    painter.hline(places.band.x_range(), places.band.center().y, line);
     let mut drawn = choice
         .document
         .scene()
@@ -178,61 +178,15 @@ fn paint_after(painter: &Painter, places: &Places, motion: &Motion, last_s: f32)
             for step in 0..FADE_STEPS {
                 let from_s = last_s + step as f32 * step_s;
                 let part = between(places, from_s, from_s + step_s);
-                let trust = motion.trust(from_s + 0.5 * step_s);
-                painter.rect_filled(part, CornerRadius::ZERO, faded(theme::BEYOND, trust));
+                // Squared, so that half the trust is seen to be much less.
+                let trust = motion.trust(from_s + 0.5 * step_s).powi(2);
+                let height = (BAND * trust).max(1.5);
+                let part = Rect::from_center_size(part.center(), vec2(part.width(), height));
+                let color = faded(theme::BEYOND, trust.max(0.25));
+                painter.rect_filled(part, CornerRadius::ZERO, color);
             }
         }
     }
-}
-
-/// Between two keys stands how time passes there.
-fn easings(ui: &Ui, places: &Places, choice: &Choice) -> Option<Action> {
-    let mut asked = None;
-    for pair in choice.document.scene().keys().windows(2) {
-        let [from, to] = [0, 1].map(|at| places.thumb_at(pair[at].time_s));
-        if to.min.x - from.max.x < CHIP.x + 4.0 {
-            continue;
-        }
-        let centre = pos2((from.max.x + to.min.x) / 2.0, places.thumbs.center().y);
-        let chip = Rect::from_center_size(centre, CHIP);
-        let id = ui.id().with(("easing", pair[0].id));
-        let response = ui.interact(chip, id, Sense::click());
-        paint_easing(ui.painter(), chip, pair[0].easing, response.hovered());
-        let name = easing_name(pair[0].easing);
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, name));
-        if response.hovered() {
-            ui.ctx().set_cursor_icon(egui::CursorIcon::PointingHand);
-        }
-        let about = format!("{name} (click, or E for the selected key)");
-        if response.on_hover_text(about).clicked() {
-            asked = Some(Action::Ease(pair[0].id, next_easing(pair[0].easing)));
-        }
-    }
-    asked
-}
-
-fn easing_name(easing: Easing) -> &'static str {
-    match easing {
-        Easing::Linear => "At an even pace",
-        Easing::In => "Starts slowly",
-        Easing::Out => "Ends slowly",
-        Easing::InOut => "Starts and ends slowly",
-    }
-}
-
-fn paint_easing(painter: &Painter, chip: Rect, easing: Easing, is_hovered: bool) {
-    let ink = if is_hovered {
-        painter.rect_filled(chip, 6.0, faded(theme::ACCENT, 0.12));
-        theme::ACCENT
-    } else {
-        theme::INK_SOFT
-    };
-    let inner = chip.shrink2(vec2(5.0, 4.0));
-    let points = (0..=16).map(|step| {
-        let t = step as f32 / 16.0;
-        inner.left_bottom() + vec2(inner.width() * t, -inner.height() * easing.apply(t))
-    });
-    painter.line(points.collect(), Stroke::new(1.6, ink));
 }
 
 fn keys(ui: &Ui, places: &Places, choice: &Choice) -> Option<Action> {

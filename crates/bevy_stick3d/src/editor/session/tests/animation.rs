@@ -366,3 +366,39 @@ fn the_horse_moves_too() {
     act(&mut app, Action::Ghosts);
     assert_eq!(is_shown(&app), [false, false]);
 }
+
+#[test]
+fn a_motion_is_written_while_the_editor_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut app = animated();
+    let target = ids(&app)[1];
+    act(&mut app, Action::Retime(target, 0.2));
+    act(&mut app, Action::Drop);
+    let file = folder.path().join("lean.clip.ron").display().to_string();
+    at_desk(&mut app, move |desk| desk.session.set_file(file.clone()));
+    act(&mut app, Action::Export);
+    assert!(said(&app).0.starts_with("Writing"), "{}", said(&app).0);
+    for _ in 0..6000 {
+        app.update();
+        if said(&app).0.starts_with("Exported") {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert!(said(&app).0.contains("lean.glb"), "{}", said(&app).0);
+    let bytes = std::fs::read(folder.path().join("lean.glb")).unwrap();
+    assert_eq!(&bytes[..4], b"glTF");
+
+    let nowhere = folder.path().join("no/such/folder/x.clip.ron");
+    let file = nowhere.display().to_string();
+    at_desk(&mut app, move |desk| desk.session.set_file(file.clone()));
+    act(&mut app, Action::Export);
+    for _ in 0..6000 {
+        app.update();
+        if said(&app).1 {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert!(said(&app).0.contains("was not written"), "{}", said(&app).0);
+}
