@@ -2,8 +2,7 @@
 
 use bevy::math::Vec2;
 use bevy_egui::egui::{
-    Align2, Color32, CornerRadius, Galley, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2,
-    vec2,
+    Align2, Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2,
 };
 use stick3d_figure::{Figure, Side, Sketch};
 
