@@ -3,6 +3,7 @@
 //! `cargo run --release --example pose_editor`
 //! `cargo run --release --example pose_editor -- --figure horse`
 //! `cargo run --release --example pose_editor -- --sketch assets/sketches/wave.json --screenshot wave.png`
+//! `cargo run --release --example pose_editor -- --clip assets/clips/wave.clip.ron`
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -30,6 +31,12 @@ struct Arguments {
     /// A sketch file to begin with.
     #[arg(long, value_name = "FILE")]
     sketch: Option<PathBuf>,
+    /// A clip file to begin with: the editor starts in its animation mode.
+    #[arg(long, value_name = "FILE.clip.ron")]
+    clip: Option<PathBuf>,
+    /// Stand still at this time of the clip, seconds; else it plays.
+    #[arg(long, value_name = "SECONDS", requires = "clip", value_parser = parse_seconds)]
+    at: Option<f32>,
     /// Take a picture of the editor without opening a window, and end.
     #[arg(long, value_name = "OUT.png")]
     screenshot: Option<PathBuf>,
@@ -54,6 +61,13 @@ fn parse_degrees(text: &str) -> Result<f32, String> {
     }
 }
 
+fn parse_seconds(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(seconds) if (0.0..=3600.0).contains(&seconds) => Ok(seconds),
+        _ => Err(format!("\"{text}\" is no time from 0 to 3600 seconds")),
+    }
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let options = EditorOptions {
@@ -61,6 +75,8 @@ fn main() -> ExitCode {
         models: arguments.model,
         yaw_rad: arguments.yaw.map(f32::to_radians),
         sketch: arguments.sketch,
+        clip: arguments.clip,
+        at_s: arguments.at,
         screenshot: arguments.screenshot,
         size_px: Some(arguments.size),
     };

@@ -40,12 +40,12 @@ fn editor() -> PathBuf {
     editor
 }
 
-/// Takes a picture of a sketch; none where there is no graphics adapter.
-fn picture(sketch: &Path, out: &Path) -> Option<RgbImage> {
+/// Takes a picture of a sketch or clip; none where there is no graphics adapter.
+fn picture(what: &[&str], out: &Path) -> Option<RgbImage> {
     let output = Command::new(editor())
         .current_dir(workspace())
-        .args(["--size", "960x540", "--sketch"])
-        .arg(sketch)
+        .args(["--size", "960x540"])
+        .args(what)
         .arg("--screenshot")
         .arg(out)
         .output()
@@ -78,12 +78,12 @@ fn difference(a: &RgbImage, b: &RgbImage) -> (f64, f64) {
     (sum as f64 / (3.0 * pixels), differing as f64 / pixels)
 }
 
-/// Fails unless the picture of a sketch is the approved one; approves it where that is asked for.
-fn assert_approved(sketch: &str, golden: &str) {
+/// Fails unless the picture is the approved one; approves it where that is asked for.
+fn assert_approved(what: &[&str], golden: &str) {
     let golden = workspace().join("tests/golden").join(golden);
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("editor.png");
-    let Some(shown) = picture(sketch.as_ref(), &out) else {
+    let Some(shown) = picture(what, &out) else {
         return;
     };
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
@@ -111,12 +111,23 @@ fn assert_approved(sketch: &str, golden: &str) {
 
 #[test]
 fn the_editor_shows_a_man_as_he_was_approved() {
-    assert_approved("assets/sketches/wave.json", "editor.png");
+    assert_approved(&["--sketch", "assets/sketches/wave.json"], "editor.png");
 }
 
 #[test]
 fn the_editor_shows_a_horse_as_it_was_approved() {
-    assert_approved("assets/sketches/horse_walk.json", "editor_horse.png");
+    assert_approved(
+        &["--sketch", "assets/sketches/horse_walk.json"],
+        "editor_horse.png",
+    );
+}
+
+#[test]
+fn the_animation_mode_shows_a_clip_as_it_was_approved() {
+    assert_approved(
+        &["--clip", "tests/data/wave.clip.ron", "--at", "0.5"],
+        "editor_animate.png",
+    );
 }
 
 #[test]
@@ -152,6 +163,23 @@ fn a_bad_sketch_ends_with_one_sentence_and_code_one() {
         "{said}"
     );
     assert!(!out.exists());
+}
+
+#[test]
+fn a_clip_with_one_key_ends_with_one_sentence_and_code_one() {
+    let output = Command::new(editor())
+        .current_dir(workspace())
+        .args(["--clip", "tests/data/one_key.clip.ron"])
+        .args(["--screenshot", "never.png"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("one_key.clip.ron") && said.contains("at least two keys"),
+        "{said}"
+    );
+    assert_eq!(said.lines().count(), 1, "{said}");
 }
 
 #[test]

@@ -1,39 +1,58 @@
 //! Painting the canvas: paper, the guide, the ink, the joints.
 
-use std::sync::Arc;
-
 use bevy::math::Vec2;
 use bevy_egui::egui::{
-    Align2, Color32, CornerRadius, Galley, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2,
-    vec2,
+    Align2, Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2,
 };
-use stick3d_figure::{Figure, Side};
+use stick3d_figure::{Figure, Side, Sketch};
 
+use super::header::Header;
 use super::theme::{self, faded, side_color};
-use super::words::{Words, capitalised};
+use super::words::Words;
 use crate::sketch_input::{SketchDrawing, screen_from_canvas};
 
-/// Space between the card's edge and its words, points.
-const MARGIN: f32 = 24.0;
-
-/// Narrower cards have smaller words.
-const NARROW: f32 = 420.0;
-
 /// Lower cards have no room for hints.
-const LOW: f32 = 340.0;
+pub(super) const LOW: f32 = 340.0;
 
 /// What the words take of a card, with and without hints, points: nothing is drawn there.
 const WORDS_HEIGHT: f32 = 78.0;
 const HEADLINE_HEIGHT: f32 = 50.0;
 
-/// The part of the card that is drawn on.
-pub(super) fn drawing_area(card: Rect) -> Rect {
-    let words = if card.height() < LOW {
-        HEADLINE_HEIGHT
-    } else {
-        WORDS_HEIGHT
+/// The same of a card beside another.
+const SMALL_WORDS_HEIGHT: f32 = 60.0;
+
+/// And what is kept free under the drawing there.
+const SMALL_MARGIN: f32 = 12.0;
+
+/// A card with a drawing on it.
+pub(super) struct Card<'a> {
+    /// Where it is.
+    pub(super) rect: Rect,
+    /// What is drawn on it.
+    pub(super) drawing: &'a SketchDrawing,
+    /// What it says.
+    pub(super) words: &'a Words,
+    /// One of several: with less space for words.
+    pub(super) is_small: bool,
+    /// Whether the body follows it.
+    pub(super) is_selected: bool,
+    /// The drawing before it, shown faintly under it.
+    pub(super) before: Option<&'a Sketch>,
+}
+
+/// The part of a card that is drawn on.
+pub(super) fn drawing_area(card: Rect, is_small: bool) -> Rect {
+    let words = match (is_small, card.height() < LOW) {
+        (true, _) => SMALL_WORDS_HEIGHT,
+        (false, true) => HEADLINE_HEIGHT,
+        (false, false) => WORDS_HEIGHT,
     };
-    card.with_min_y(card.min.y + words.min(card.height() / 4.0))
+    let area = card.with_min_y(card.min.y + words.min(card.height() / 4.0));
+    if is_small {
+        area.with_max_y(area.max.y - SMALL_MARGIN)
+    } else {
+        area
+    }
 }
 
 /// Turns canvas units into egui points.
@@ -58,17 +77,21 @@ impl ToScreen {
     }
 }
 
-/// Paints the whole card of the canvas. `pulse` goes from 0 to 1 and back.
-pub(super) fn paint(
-    painter: &Painter,
-    rect: Rect,
-    drawing: &SketchDrawing,
-    words: &Words,
-    pulse: f32,
-) {
-    let to_screen = ToScreen::new(drawing_area(rect));
-    let header = Header::of(painter, rect, drawing, words);
+/// Paints the whole card of a canvas. `pulse` goes from 0 to 1 and back.
+pub(super) fn paint(painter: &Painter, card: &Card, pulse: f32) {
+    let (rect, drawing) = (card.rect, card.drawing);
+    let to_screen = ToScreen::new(drawing_area(rect, card.is_small));
+    let header = Header::of(painter, card);
     paper(painter, rect, header.bottom);
+    if card.is_small && card.is_selected {
+        let corners = CornerRadius::from(theme::CARD_RADIUS);
+        let edge = Stroke::new(2.0, theme::ACCENT);
+        painter.rect_stroke(rect, corners, edge, StrokeKind::Inside);
+    }
+    let painter = &painter.with_clip_rect(painter.clip_rect().intersect(rect));
+    if let Some(before) = card.before {
+        shade(painter, to_screen, drawing.figure(), before.points());
+    }
     match drawing.sketch() {
         Some(sketch) => {
             ink(painter, to_screen, drawing, 0.10);
@@ -78,7 +101,9 @@ pub(super) fn paint(
             guide(painter, to_screen, drawing);
             recognised(painter, to_screen, drawing);
             ink(painter, to_screen, drawing, 0.92);
-            next_joint(painter, to_screen, drawing, pulse);
+            if card.is_selected {
+                next_joint(painter, to_screen, drawing, pulse);
+            }
         }
     }
     if let Some(stroke) = drawing.pen_stroke() {
@@ -114,62 +139,17 @@ fn paper(painter: &Painter, rect: Rect, words_bottom: f32) {
     );
 }
 
-/// The words at the top of the card, laid out.
-struct Header {
-    headline: (Pos2, Arc<Galley>),
-    hint: Option<(Pos2, Arc<Galley>)>,
-    /// How far the drawing has come, while it is not finished.
-    rail: Option<Rect>,
-    /// Where the words end.
-    bottom: f32,
-}
-
-impl Header {
-    fn of(painter: &Painter, rect: Rect, drawing: &SketchDrawing, words: &Words) -> Self {
-        let margin = MARGIN.min(rect.width() / 12.0);
-        let width = (rect.width() - 2.0 * margin).max(1.0);
-        let font = if rect.width() < NARROW {
-            theme::small_headline()
-        } else {
-            theme::headline()
-        };
-        let left = rect.min + vec2(margin, margin - 4.0);
-        let headline = painter.layout(capitalised(&words.headline), font, theme::INK, width);
-        let mut bottom = left.y + headline.size().y;
-        let hint = (rect.height() >= LOW && !words.hint.is_empty()).then(|| {
-            let hint = painter.layout(words.hint.clone(), theme::body(), theme::INK_SOFT, width);
-            let at = pos2(left.x, bottom + 4.0);
-            bottom = at.y + hint.size().y;
-            (at, hint)
-        });
-        let rail = drawing.sketch().is_none().then(|| {
-            let rail = Rect::from_min_size(pos2(left.x, bottom + 12.0), vec2(width, 4.0));
-            bottom = rail.max.y;
-            rail
-        });
-        Self {
-            headline: (left, headline),
-            hint,
-            rail,
-            bottom,
-        }
-    }
-
-    fn paint(self, painter: &Painter, drawing: &SketchDrawing) {
-        for (at, galley) in std::iter::once(self.headline).chain(self.hint) {
-            painter.galley(at, galley, theme::INK);
-        }
-        if let Some(rail) = self.rail {
-            painter.rect_filled(rail, CornerRadius::same(2), theme::HAIRLINE);
-            let mut done = rail;
-            done.set_width(rail.width() * drawing.live_progress().fraction);
-            painter.rect_filled(done, CornerRadius::same(2), theme::ACCENT);
-        }
+/// The drawing before this one, as if the paper let it shine through.
+fn shade(painter: &Painter, to_screen: ToScreen, figure: &Figure, points: &[Vec2]) {
+    for &[a, b] in &figure.bones {
+        let color = mixed_with_paper(side_color(bone_side(figure, [a, b])), 0.13);
+        let ends = [points[a], points[b]].map(|p| to_screen.point(p));
+        round_line(painter, ends, 5.0 * to_screen.size(), color);
     }
 }
 
 /// The side a bone is on: that of its outer end.
-fn bone_side(figure: &Figure, bone: [usize; 2]) -> Side {
+pub(super) fn bone_side(figure: &Figure, bone: [usize; 2]) -> Side {
     match figure.joints[bone[1]].side {
         Side::Center => figure.joints[bone[0]].side,
         side => side,
@@ -357,11 +337,16 @@ fn side_letters(
         let inner = points[if bone[0] == joint { bone[1] } else { bone[0] }];
         let end = to_screen.point(*point);
         let outward = (end - to_screen.point(inner)).normalized();
+        let (distance, font) = if to_screen.size() < 0.75 {
+            (15.0, theme::small())
+        } else {
+            (24.0 * to_screen.size(), theme::body())
+        };
         painter.text(
-            end + outward * 24.0 * to_screen.size(),
+            end + outward * distance,
             Align2::CENTER_CENTER,
             letter,
-            theme::body(),
+            font,
             mixed_with_paper(side_color(side), opacity),
         );
     }

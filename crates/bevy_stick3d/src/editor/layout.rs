@@ -2,6 +2,7 @@
 
 use bevy_egui::egui::{Rect, pos2, vec2};
 
+use super::session::Mode;
 use super::theme::GAP;
 
 /// Height of a row of buttons, points.
@@ -10,6 +11,13 @@ const ROW_HEIGHT: f32 = 40.0;
 const ROW_GAP: f32 = 10.0;
 /// What the file field and its buttons need beside the figures, points.
 const FILES_WIDTH: f32 = 230.0;
+/// The timeline's share of the window's height, and its limits, points.
+const TIMELINE_SHARE: f32 = 0.19;
+const TIMELINE_HEIGHT: [f32; 2] = [126.0, 160.0];
+/// Two canvases beside each other are at least so wide, points; else there is one at a time.
+const LEAST_PAIR: f32 = 230.0;
+/// Between them, points.
+const PAIR_GAP: f32 = 12.0;
 
 /// The parts of the window, in egui points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,20 +28,41 @@ pub(super) struct Layout {
     pub(super) files: Rect,
     /// What is drawn on.
     pub(super) canvas: Rect,
+    /// The same for two drawings beside each other, where there is room for them.
+    pub(super) pair: Option<[Rect; 2]>,
     /// The tools, under the canvas.
     pub(super) tools: Rect,
     /// The 3D view.
     pub(super) view: Rect,
+    /// The timeline along the bottom, of motions.
+    pub(super) timeline: Option<Rect>,
 }
 
 impl Layout {
     /// Canvas left and view right; canvas above view where the window is taller than wide.
     ///
     /// `choices_width` is what the figures need beside each other.
-    pub(super) fn of(window: Rect, choices_width: f32) -> Self {
-        let inner = window.shrink(GAP.min(window.width().min(window.height()) / 8.0));
+    pub(super) fn of(window: Rect, choices_width: f32, mode: Mode) -> Self {
+        let gap = GAP.min(window.width().min(window.height()) / 8.0);
+        let inner = window.shrink(gap);
+        let (inner, timeline) = match mode {
+            Mode::Pose => (inner, None),
+            Mode::Animate => {
+                let [least, most] = TIMELINE_HEIGHT;
+                let height = (inner.height() * TIMELINE_SHARE)
+                    .clamp(least, most)
+                    .min(inner.height() / 3.0);
+                let top = inner.max.y - height;
+                let above = inner.with_max_y(top - gap);
+                (above, Some(inner.with_min_y(top)))
+            }
+        };
         let (left, view) = if inner.width() >= inner.height() {
-            let width = ((inner.width() - GAP) * 0.46).max(1.0);
+            let share = match mode {
+                Mode::Pose => 0.46,
+                Mode::Animate => 0.54,
+            };
+            let width = ((inner.width() - GAP) * share).max(1.0);
             let left = Rect::from_min_size(inner.min, vec2(width, inner.height()));
             let view = Rect::from_min_max(pos2(left.max.x + GAP, inner.min.y), inner.max);
             (left, view)
@@ -55,17 +84,31 @@ impl Layout {
         } else {
             (top, bottom, row_at(bottom.min.y - row))
         };
+        let canvas = Rect::from_min_max(
+            pos2(left.min.x, top.max.y + gap),
+            pos2(left.max.x, tools.min.y - gap),
+        );
         Self {
             choices,
             files,
-            canvas: Rect::from_min_max(
-                pos2(left.min.x, top.max.y + gap),
-                pos2(left.max.x, tools.min.y - gap),
-            ),
+            canvas,
+            pair: (mode == Mode::Animate).then(|| pair(canvas)).flatten(),
             tools,
             view,
+            timeline,
         }
     }
+}
+
+/// The two halves of the place for drawings, if they are wide enough.
+fn pair(canvas: Rect) -> Option<[Rect; 2]> {
+    let width = (canvas.width() - PAIR_GAP) / 2.0;
+    (width >= LEAST_PAIR).then(|| {
+        [
+            canvas.with_max_x(canvas.min.x + width),
+            canvas.with_min_x(canvas.max.x - width),
+        ]
+    })
 }
 
 #[cfg(test)]
@@ -74,22 +117,27 @@ mod tests {
 
     #[test]
     fn parts_never_overlap_and_stay_inside() {
-        for (width, height) in [
+        let sizes = [
             (1600.0, 900.0),
+            (960.0, 540.0),
             (900.0, 1600.0),
+            (700.0, 500.0),
             (640.0, 600.0),
             (400.0, 300.0),
             (40.0, 30.0),
-        ] {
+        ];
+        for ((width, height), mode) in sizes
+            .into_iter()
+            .flat_map(|size| [(size, Mode::Pose), (size, Mode::Animate)])
+        {
             let window = Rect::from_min_size(pos2(0.0, 0.0), vec2(width, height));
-            let layout = Layout::of(window, 200.0);
-            let parts = [
-                layout.choices,
-                layout.files,
-                layout.canvas,
-                layout.tools,
-                layout.view,
-            ];
+            let layout = Layout::of(window, 200.0, mode);
+            let mut parts = vec![layout.choices, layout.files, layout.tools, layout.view];
+            parts.extend(layout.timeline);
+            match layout.pair {
+                Some(pair) => parts.extend(pair),
+                None => parts.push(layout.canvas),
+            }
             for (index, part) in parts.iter().enumerate() {
                 assert!(window.contains_rect(*part), "{part:?} in {window:?}");
                 assert!(part.is_positive(), "{part:?}");
@@ -101,7 +149,7 @@ mod tests {
                     );
                 }
             }
-            assert!(layout.canvas.height() > height / 8.0);
+            assert!(layout.canvas.height() > height / 9.0, "{layout:?}");
         }
     }
 
@@ -109,9 +157,19 @@ mod tests {
     fn the_file_goes_below_where_it_has_no_room_beside_the_figures() {
         let of = |width| {
             let window = Rect::from_min_size(pos2(0.0, 0.0), vec2(width, 600.0));
-            Layout::of(window, 200.0)
+            Layout::of(window, 200.0, Mode::Pose)
         };
         assert!(of(1600.0).files.max.y < of(1600.0).canvas.min.y);
         assert!(of(640.0).files.min.y > of(640.0).canvas.max.y);
+    }
+
+    #[test]
+    fn two_drawings_are_beside_each_other_where_they_have_room() {
+        let pair = |width, mode| {
+            let window = Rect::from_min_size(pos2(0.0, 0.0), vec2(width, 540.0));
+            Layout::of(window, 200.0, mode).pair.is_some()
+        };
+        assert!(pair(960.0, Mode::Animate) && !pair(700.0, Mode::Animate));
+        assert!(!pair(1600.0, Mode::Pose));
     }
 }

@@ -5,9 +5,11 @@ use bevy_egui::egui::{
     Rect, RichText, Sense, Stroke, StrokeKind, TextEdit, Ui, UiBuilder, load::SizedTexture, vec2,
 };
 
-use super::session::Action;
+use super::session::{Action, Mode, Session};
 use super::status_line::StatusLine;
 use super::theme;
+use super::timeline::controls;
+use super::timeline::history::Document;
 use crate::sketch_input::SketchDrawing;
 
 /// The file field is at most so wide, points.
@@ -42,8 +44,12 @@ const SHORTCUTS: [(Modifiers, Key, Action); 7] = [
 ];
 
 /// The key combination that was pressed, unless somebody is typing.
-pub(super) fn shortcut(ctx: &egui::Context) -> Option<Action> {
+pub(super) fn shortcut(ctx: &egui::Context, session: &Session) -> Option<Action> {
     let typing = ctx.egui_wants_keyboard_input();
+    let (mode, other) = match session.mode() {
+        Mode::Pose => (Mode::Pose, Mode::Animate),
+        Mode::Animate => (Mode::Animate, Mode::Pose),
+    };
     ctx.input_mut(|input| {
         SHORTCUTS
             .iter()
@@ -57,6 +63,16 @@ pub(super) fn shortcut(ctx: &egui::Context) -> Option<Action> {
                     .iter()
                     .position(|key| !typing && input.consume_key(Modifiers::NONE, *key))
                     .map(Action::Choose)
+            })
+            .or_else(|| {
+                let asked = !typing && input.consume_key(Modifiers::NONE, Key::A);
+                asked.then_some(Action::Switch(other))
+            })
+            .or_else(|| {
+                let choice = session.choice()?;
+                (!typing && mode == Mode::Animate)
+                    .then(|| controls::shortcut(input, choice))
+                    .flatten()
             })
     })
 }
@@ -100,18 +116,23 @@ fn row(ui: &mut Ui, rect: Rect, layout: Layout, content: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// What can be done with the drawing.
-pub(super) fn tools(ui: &mut Ui, rect: Rect, drawing: &SketchDrawing) -> Option<Action> {
+/// What can be done with the drawing, and with its history.
+pub(super) fn tools(
+    ui: &mut Ui,
+    rect: Rect,
+    drawing: &SketchDrawing,
+    document: &Document,
+) -> Option<Action> {
     let begun = !drawing.strokes().is_empty() || drawing.sketch().is_some();
     let finished = drawing.sketch().is_some();
     let tools = [
         Tool::new(
             "Undo",
             "Ctrl+Z, or scribble",
-            drawing.can_undo(),
+            document.can_undo(),
             Action::Undo,
         ),
-        Tool::new("Redo", "Ctrl+Shift+Z", drawing.can_redo(), Action::Redo),
+        Tool::new("Redo", "Ctrl+Shift+Z", document.can_redo(), Action::Redo),
         Tool::new("Mirror", "M", finished, Action::Mirror),
         Tool::new("Clear", "Esc", begun, Action::Clear),
     ];
@@ -128,11 +149,16 @@ pub(super) fn tools(ui: &mut Ui, rect: Rect, drawing: &SketchDrawing) -> Option<
 pub(super) fn file(
     ui: &mut Ui,
     rect: Rect,
-    drawing: &SketchDrawing,
+    mode: Mode,
+    can_save: bool,
     file: &mut String,
 ) -> Option<Action> {
+    let hint = match mode {
+        Mode::Pose => "sketch.json",
+        Mode::Animate => "motion.clip.ron",
+    };
     let tools = [
-        Tool::new("Save", "Ctrl+S", drawing.sketch().is_some(), Action::Save),
+        Tool::new("Save", "Ctrl+S", can_save, Action::Save),
         Tool::new(
             "Open",
             "Ctrl+O, or drop a file on the window",
@@ -148,13 +174,27 @@ pub(super) fn file(
         let width = (ui.available_width() - 8.0).clamp(1.0, FILE_WIDTH);
         ui.add(
             TextEdit::singleline(file)
-                .hint_text("sketch.json")
+                .hint_text(hint)
                 .desired_width(width)
                 .text_color(theme::INK_SOFT)
                 .font(theme::small()),
         );
     });
     asked
+}
+
+/// A card of paper; its inside.
+pub(super) fn card(ui: &Ui, rect: Rect) -> Rect {
+    let corners = CornerRadius::from(theme::CARD_RADIUS);
+    ui.painter().add(theme::CARD_SHADOW.as_shape(rect, corners));
+    ui.painter().rect_filled(rect, corners, theme::PAPER);
+    ui.painter().rect_stroke(
+        rect,
+        corners,
+        Stroke::new(1.0, theme::HAIRLINE),
+        StrokeKind::Inside,
+    );
+    rect.shrink2(vec2(12.0, 7.0))
 }
 
 /// One quiet line inside the canvas' lower edge.
@@ -250,7 +290,7 @@ pub(super) fn drop_hint(ui: &Ui, canvas: Rect) {
         Stroke::new(2.0, theme::ACCENT),
         StrokeKind::Inside,
     );
-    let words = RichText::new("Drop the sketch here").font(theme::headline());
+    let words = RichText::new("Drop the sketch or clip here").font(theme::headline());
     ui.painter().text(
         canvas.center(),
         Align2::CENTER_CENTER,

@@ -10,6 +10,8 @@ use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 use bevy::render::render_resource::Face;
 
+use super::viewport::EditedFigure;
+
 const ZENITH: Srgba = Srgba::rgb(0.50, 0.66, 0.80);
 const HORIZON: Srgba = Srgba::rgb(0.92, 0.92, 0.91);
 const NADIR: Srgba = Srgba::rgb(0.91, 0.90, 0.88);
@@ -19,6 +21,25 @@ const SKY_RADIUS_M: f32 = 60.0;
 /// The ground is solid up to here, then fades.
 const GROUND_SOLID_M: f32 = 2.5;
 const GROUND_RADIUS_M: f32 = 14.0;
+
+/// What goes along with a figure that walks, so that the world has no end.
+#[derive(Component)]
+pub(super) struct Endless;
+
+/// Keeps the ground and the sky round the figure that is shown.
+pub(super) fn follow(
+    figures: Query<(&Transform, &EditedFigure), Without<Endless>>,
+    mut stage: Query<&mut Transform, With<Endless>>,
+) {
+    let shown = figures.iter().find(|(_, edited)| edited.is_shown);
+    let Some((body, _)) = shown else {
+        return;
+    };
+    let wanted = Transform::from_translation(body.translation.with_y(0.0));
+    for mut transform in &mut stage {
+        transform.set_if_neq(wanted);
+    }
+}
 
 /// Sky, ground and lights.
 pub(super) fn build(
@@ -31,6 +52,7 @@ pub(super) fn build(
     commands.insert_resource(GlobalAmbientLight::NONE);
     commands.spawn((
         Name::new("sky"),
+        Endless,
         Mesh3d(meshes.add(sky_mesh())),
         MeshMaterial3d(materials.add(StandardMaterial {
             unlit: true,
@@ -44,6 +66,7 @@ pub(super) fn build(
     ));
     commands.spawn((
         Name::new("ground"),
+        Endless,
         Mesh3d(meshes.add(ground_mesh())),
         MeshMaterial3d(materials.add(StandardMaterial {
             perceptual_roughness: 0.95,

@@ -10,7 +10,8 @@ use thiserror::Error;
 
 use super::PoseEditorPlugin;
 use super::files::{SketchFileError, read_sketch};
-use super::session::{EditorFigure, FirstSketch};
+use super::session::{EditorFigure, FirstClip, FirstSketch, read_clip};
+use super::timeline::clip::ClipFileError;
 use super::words::known_figures;
 use crate::embedded::EMBEDDED_MODELS;
 use crate::launch::{Launch, LaunchError};
@@ -25,6 +26,10 @@ pub struct EditorOptions {
     pub models: Vec<PathBuf>,
     /// A sketch file to begin with.
     pub sketch: Option<PathBuf>,
+    /// A clip file to begin with, in the animation mode.
+    pub clip: Option<PathBuf>,
+    /// When to stand still in the clip, seconds. Without it the clip plays; in a picture it stands at its beginning.
+    pub at_s: Option<f32>,
     /// From where to look at the body: turned about the vertical, 0 for the side that is drawn.
     pub yaw_rad: Option<f32>,
     /// Take a picture of the editor without a window, write it here as PNG, and end.
@@ -40,6 +45,14 @@ pub enum EditorError {
     /// The sketch to begin with cannot be used.
     #[error(transparent)]
     Sketch(#[from] SketchFileError),
+    /// The clip to begin with cannot be used.
+    #[error("cannot use the clip {path}: {error}")]
+    Clip {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong with it.
+        error: ClipFileError,
+    },
     /// A model file cannot be used.
     #[error("cannot use the model {path}: {error}")]
     Model {
@@ -68,7 +81,7 @@ impl EditorError {
     /// 3 without a display, 4 without a graphics adapter.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Sketch(_) | Self::Model { .. } => 1,
+            Self::Sketch(_) | Self::Clip { .. } | Self::Model { .. } => 1,
             Self::UnknownFigure { .. } => 2,
             Self::Launch(error) => error.exit_code(),
         }
@@ -94,12 +107,17 @@ pub fn run(options: &EditorOptions) -> Result<(), EditorError> {
         }
         None => None,
     };
+    let clip = match &options.clip {
+        Some(path) => Some(first_clip(path, options, &figures)?),
+        None => None,
+    };
     let asked = match &options.figure {
         Some(name) => Some(figure_called(name, &figures)?),
         None => None,
     };
     let own = (!options.models.is_empty()).then(|| figures.len() - 1);
     let first = asked
+        .or(clip.as_ref().map(|clip| clip.figure))
         .or(sketch.as_ref().map(|sketch| sketch.figure))
         .or(own)
         .unwrap_or(0);
@@ -117,12 +135,32 @@ pub fn run(options: &EditorOptions) -> Result<(), EditorError> {
                 figures,
                 first,
                 sketch,
+                clip,
                 yaw_rad: options.yaw_rad,
                 is_picture: options.screenshot.is_some(),
             },
         ));
     })?;
     Ok(())
+}
+
+/// The clip to begin with. A figure of one's own comes before an embedded one of the same name.
+fn first_clip(
+    path: &Path,
+    options: &EditorOptions,
+    figures: &[EditorFigure],
+) -> Result<FirstClip, EditorError> {
+    let known: Vec<&EditorFigure> = figures.iter().rev().collect();
+    let (from_last, scene) = read_clip(path, &known).map_err(|error| EditorError::Clip {
+        path: path.to_owned(),
+        error,
+    })?;
+    Ok(FirstClip {
+        figure: figures.len() - 1 - from_last,
+        scene,
+        file: path.to_owned(),
+        at_s: options.at_s.or(options.screenshot.as_ref().map(|_| 0.0)),
+    })
 }
 
 /// The embedded figures, then those of the model files.

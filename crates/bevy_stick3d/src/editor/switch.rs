@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use bevy_egui::egui::{
-    self, Color32, CornerRadius, Galley, Painter, Rect, Sense, Shadow, Stroke, Ui, WidgetInfo,
-    WidgetType, pos2, vec2,
+    self, Color32, CornerRadius, Galley, Painter, Rect, Sense, Shadow, Ui, WidgetInfo, WidgetType,
+    pos2, vec2,
 };
 use stick3d_figure::Figure;
 
 use super::session::{Action, Choice};
 use super::theme;
+use super::timeline::thumbnail::LittleFigure;
 
 /// Height of the switch, points.
 const HEIGHT: f32 = 40.0;
@@ -81,7 +82,7 @@ pub(super) fn show(ui: &mut Ui, row: Rect, choices: &[Choice], active: usize) ->
         }
         let painter = ui.painter().with_clip_rect(segment);
         let icon = icon_rect(choice.figure.figure(), segment);
-        paint_icon(&painter, choice.figure.figure(), icon, ink);
+        icon_of(choice.figure.figure()).paint(&painter, icon.center(), |_| ink);
         if has_names {
             let galley = name(ui, choice, ink);
             let at = pos2(
@@ -102,7 +103,7 @@ pub(super) fn show(ui: &mut Ui, row: Rect, choices: &[Choice], active: usize) ->
 }
 
 /// The card under the chosen segment.
-fn raised(painter: &Painter, segment: Rect) {
+pub(super) fn raised(painter: &Painter, segment: Rect) {
     let corners = CornerRadius::same(9);
     let shadow = Shadow {
         offset: [0, 1],
@@ -124,40 +125,20 @@ fn segment_width(choice: &Choice, name: Option<&Arc<Galley>>) -> f32 {
     2.0 * PADDING + icon_size(choice.figure.figure()).x + words
 }
 
-/// How large the figure's template is drawn.
+/// The figure's template, as large as there is room.
+fn icon_of(figure: &Figure) -> LittleFigure<'_> {
+    LittleFigure::fitted(figure, &figure.template, vec2(ICON_WIDTH, ICON_HEIGHT), 1.8)
+}
+
+/// How large that is.
 fn icon_size(figure: &Figure) -> egui::Vec2 {
-    let template = Rect::from_points(&points(figure));
-    let size = template.size().max(egui::Vec2::splat(1.0e-4));
-    size * (ICON_HEIGHT / size.y).min(ICON_WIDTH / size.x)
+    icon_of(figure).size()
 }
 
 fn icon_rect(figure: &Figure, segment: Rect) -> Rect {
     let size = icon_size(figure);
     let centre = pos2(segment.min.x + PADDING + size.x / 2.0, segment.center().y);
     Rect::from_center_size(centre, size)
-}
-
-/// The template, y down.
-fn points(figure: &Figure) -> Vec<egui::Pos2> {
-    figure.template.iter().map(|p| pos2(p.x, -p.y)).collect()
-}
-
-fn paint_icon(painter: &Painter, figure: &Figure, rect: Rect, color: Color32) {
-    let points = points(figure);
-    let template = Rect::from_points(&points);
-    let scale = rect.height() / template.height().max(1.0e-4);
-    let on_screen = |joint: usize| rect.center() + (points[joint] - template.center()) * scale;
-    for &[a, b] in &figure.bones {
-        let ends = [on_screen(a), on_screen(b)];
-        painter.line_segment(ends, Stroke::new(1.8, color));
-        for end in ends {
-            painter.circle_filled(end, 0.9, color);
-        }
-    }
-    // The path begins at the head.
-    if let Some(&head) = figure.path.first() {
-        painter.circle_filled(on_screen(head), 3.2, color);
-    }
 }
 
 #[cfg(test)]

@@ -26,6 +26,8 @@ pub(super) const HAIRLINE: Color32 = Color32::from_rgb(218, 212, 201);
 pub(super) const ACCENT: Color32 = Color32::from_rgb(24, 117, 104);
 /// What went wrong.
 pub(super) const ALERT: Color32 = Color32::from_rgb(166, 54, 38);
+/// What is past the last key: nobody drew it.
+pub(super) const BEYOND: Color32 = Color32::from_rgb(132, 78, 163);
 /// The figure's right limbs.
 pub(super) const RIGHT: Color32 = Color32::from_rgb(213, 94, 0);
 /// The figure's left limbs.
@@ -76,6 +78,11 @@ pub(super) fn body() -> FontId {
 /// Labels and hints.
 pub(super) fn small() -> FontId {
     FontId::new(13.0, FontFamily::Proportional)
+}
+
+/// The names of times.
+pub(super) fn tiny() -> FontId {
+    FontId::new(11.0, FontFamily::Proportional)
 }
 
 /// Makes egui look like the rest of the editor.

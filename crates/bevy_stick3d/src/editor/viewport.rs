@@ -3,13 +3,14 @@
 use bevy::camera::RenderTarget;
 use bevy::camera::primitives::Aabb;
 use bevy::core_pipeline::tonemapping::Tonemapping;
-use bevy::light::ShadowFilteringMethod;
+use bevy::light::{NotShadowCaster, NotShadowReceiver, ShadowFilteringMethod};
 use bevy::prelude::*;
 use bevy::render::render_resource::{Extent3d, TextureFormat};
 use bevy::render::view::Msaa;
 use bevy_egui::{EguiTextureHandle, EguiUserTextures, egui};
 
 use super::orbit::{FOV_Y_RAD, Framing, Orbit, camera_transform};
+use super::timeline::perform::Ghost;
 use super::{EditorClock, stage};
 use crate::material::figure_material;
 use crate::sketch_input::SketchPreview;
@@ -42,6 +43,13 @@ pub(super) struct ViewCamera;
 /// The extents that the stage is made for, metres; other bodies are shown larger or smaller than they are.
 const STAGE_EXTENTS_M: [f32; 2] = [0.35, 2.5];
 
+/// The bodies of the keys before and after: warm is past, cool is to come.
+const GHOST_BEFORE: Srgba = Srgba::rgb(0.78, 0.52, 0.37);
+const GHOST_AFTER: Srgba = Srgba::rgb(0.42, 0.66, 0.72);
+const GHOST_OPACITY: f32 = 0.45;
+/// Ghosts are drawn as if they were some decimetres farther away: where they are inside the body, only the body is seen.
+const GHOST_DEPTH_BIAS: f32 = -900_000.0;
+
 /// A figure that is drawn, and how it is looked at.
 #[derive(Component)]
 pub(super) struct EditedFigure {
@@ -49,6 +57,8 @@ pub(super) struct EditedFigure {
     pub(super) orbit: Orbit,
     /// Whether it is the one that is drawn now.
     pub(super) is_shown: bool,
+    /// Whether a motion poses it, and not the drawing.
+    pub(super) is_performing: bool,
     /// Half of its largest extent at rest, as shown.
     extent_m: f32,
     scale: f32,
@@ -68,6 +78,7 @@ impl EditedFigure {
                 ..usual
             },
             is_shown,
+            is_performing: false,
             extent_m: shown_m,
             scale: if extent_m > 0.0 {
                 shown_m / extent_m
@@ -96,11 +107,12 @@ pub(super) struct ViewportPlugin;
 impl Plugin for ViewportPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(Startup, (stage::build, spawn_view))
+            .add_systems(PostStartup, dress_ghosts)
             .add_systems(
                 PostUpdate,
                 (
                     resize_image.before(bevy::camera::CameraUpdateSystems),
-                    (show_or_hide, frame_figure)
+                    (show_or_hide, frame_figure, stage::follow)
                         .after(crate::Stick3dSystems::Dress)
                         .before(TransformSystems::Propagate)
                         .before(bevy::camera::visibility::VisibilitySystems::VisibilityPropagate),
@@ -162,6 +174,37 @@ fn spawn_view(
     });
 }
 
+/// Ghosts are seen through, and have the colour of their side in time.
+///
+/// Their share of each pixel's samples is drawn opaque, so that nothing of a ghost shines through itself.
+fn dress_ghosts(
+    mut commands: Commands,
+    ghosts: Query<(Entity, &Ghost)>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    let mut material = |tint: Srgba| {
+        let tint = LinearRgba::from(tint);
+        materials.add(StandardMaterial {
+            base_color: Color::from((tint * 0.4).with_alpha(GHOST_OPACITY)),
+            emissive: tint * 0.75,
+            perceptual_roughness: 1.0,
+            reflectance: 0.0,
+            alpha_mode: AlphaMode::AlphaToCoverage,
+            depth_bias: GHOST_DEPTH_BIAS,
+            ..figure_material()
+        })
+    };
+    let [before, after] = [GHOST_BEFORE, GHOST_AFTER].map(&mut material);
+    for (entity, ghost) in &ghosts {
+        let material = match ghost {
+            Ghost::Before => before.clone(),
+            Ghost::After => after.clone(),
+        };
+        let dress = (MeshMaterial3d(material), NotShadowCaster, NotShadowReceiver);
+        commands.entity(entity).insert(dress);
+    }
+}
+
 /// Gives the image the size of its place in the window.
 fn resize_image(view: Res<View>, mut images: ResMut<Assets<Image>>) {
     let wanted = Extent3d {
@@ -189,12 +232,13 @@ fn show_or_hide(
     materials: Res<FigureMaterials>,
 ) {
     for (has_sketch, is_preview, mut visibility, material, edited) in &mut figures {
-        visibility.set_if_neq(if has_sketch && edited.is_shown {
+        let has_pose = has_sketch || edited.is_performing;
+        visibility.set_if_neq(if has_pose && edited.is_shown {
             Visibility::Inherited
         } else {
             Visibility::Hidden
         });
-        let wanted = if is_preview {
+        let wanted = if is_preview && !edited.is_performing {
             &materials.preview
         } else {
             &materials.finished
@@ -210,17 +254,18 @@ fn show_or_hide(
 /// Keeps the body in view, gently; one that has not been drawn yet where it will stand.
 fn frame_figure(
     view: Res<View>,
-    mut figures: Query<(Option<&Aabb>, &mut EditedFigure)>,
+    mut figures: Query<(Option<&Aabb>, &Transform, &mut EditedFigure), Without<ViewCamera>>,
     mut cameras: Query<&mut Transform, With<ViewCamera>>,
     clock: Res<EditorClock>,
 ) {
-    for (aabb, mut edited) in &mut figures {
+    for (aabb, body, mut edited) in &mut figures {
         if !edited.is_shown {
             continue;
         }
         let (scale, extent_m) = (edited.scale, edited.extent_m);
         let goal = aabb.map(|aabb| {
-            let [low, high] = [aabb.min(), aabb.max()].map(|corner| Vec3::from(corner) * scale);
+            let [low, high] = [aabb.min(), aabb.max()]
+                .map(|corner| Vec3::from(corner) * scale + body.translation);
             Framing::around(low, high, extent_m)
         });
         if let Some(goal) = goal {

@@ -61,6 +61,18 @@ pub(super) fn next_step(drawing: &SketchDrawing) -> Words {
     }
 }
 
+/// What to do next with the drawing of a key, the `place`th of `count` from 0.
+pub(super) fn key_words(place: usize, count: usize, drawing: &SketchDrawing) -> Words {
+    Words {
+        headline: match place {
+            0 => "Source".to_owned(),
+            last if last + 1 == count => "Target".to_owned(),
+            between => format!("Key {}", between + 1),
+        },
+        hint: next_step(drawing).headline,
+    }
+}
+
 /// A joint's name as one says it: `elbow_r` is the right elbow, `knee_fl` the left front knee.
 pub(super) fn joint_words(figure: &Figure, joint: usize) -> String {
     let Some(joint) = figure.joints.get(joint) else {
@@ -136,6 +148,18 @@ mod tests {
         let words = next_step(&SketchDrawing::default());
         assert_eq!(words.headline, "Draw forehead to neck");
         assert!(words.hint.starts_with("Follow the faint figure"));
+    }
+
+    #[test]
+    fn keys_are_named_by_their_place() {
+        let drawing = SketchDrawing::default();
+        let name = |place, count| key_words(place, count, &drawing).headline;
+        assert_eq!([name(0, 2), name(1, 2)], ["Source", "Target"]);
+        assert_eq!(
+            [name(0, 3), name(1, 3), name(2, 3)],
+            ["Source", "Key 2", "Target"]
+        );
+        assert_eq!(key_words(0, 2, &drawing).hint, "Draw forehead to neck");
     }
 
     #[test]

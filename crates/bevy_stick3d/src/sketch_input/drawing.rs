@@ -29,12 +29,13 @@ pub enum DrawingChange {
     Redrawn,
 }
 
-/// What undo brings back.
+/// What is on a canvas, in canvas units: what undo brings back.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Ink {
-    strokes: Vec<Stroke>,
+pub struct Ink {
+    /// The finished strokes.
+    pub strokes: Vec<Stroke>,
     /// Once all joints have their place.
-    sketch: Option<Sketch>,
+    pub sketch: Option<Sketch>,
 }
 
 /// What the pen is doing.
@@ -95,6 +96,11 @@ impl SketchDrawing {
     /// The finished strokes.
     pub fn strokes(&self) -> &[Stroke] {
         &self.ink.strokes
+    }
+
+    /// What is on the canvas, a joint in hand where it is now.
+    pub fn ink(&self) -> &Ink {
+        &self.ink
     }
 
     /// The stroke that is being drawn.
@@ -396,6 +402,20 @@ impl SketchDrawing {
         Ok(())
     }
 
+    /// Puts other ink on the canvas, as one lays another sheet: its strokes can be taken back, the sheet before cannot.
+    pub fn put_ink(&mut self, ink: Ink) {
+        self.history = History::new(Ink::default(), MAX_UNDO);
+        for count in 1..ink.strokes.len() {
+            self.history.push(Ink {
+                strokes: ink.strokes[..count].to_vec(),
+                sketch: None,
+            });
+        }
+        self.history.push(ink.clone());
+        self.pen = PenState::Idle;
+        self.show(ink);
+    }
+
     /// Goes one step on, which can be undone.
     fn step(&mut self, ink: Ink) {
         if let (None, Some(sketch)) = (&self.ink.sketch, &ink.sketch) {
@@ -463,6 +483,23 @@ mod tests {
         assert_eq!(drawing.sketch(), Some(&before));
         drawing.redo();
         assert_ne!(drawing.sketch(), Some(&before));
+    }
+
+    #[test]
+    fn another_sheet_has_its_own_strokes_to_take_back() {
+        let mut drawing = loaded();
+        let line = |y| Stroke::from_positions([Vec2::new(0.0, y), Vec2::new(60.0, y)]).unwrap();
+        let ink = Ink {
+            strokes: vec![line(0.0), line(50.0)],
+            sketch: None,
+        };
+        drawing.put_ink(ink.clone());
+        assert_eq!(drawing.ink(), &ink);
+        drawing.undo();
+        assert_eq!(drawing.strokes(), &ink.strokes[..1]);
+        drawing.undo();
+        assert_eq!(drawing.ink(), &Ink::default());
+        assert!(!drawing.can_undo(), "the sheet before is gone");
     }
 
     #[test]

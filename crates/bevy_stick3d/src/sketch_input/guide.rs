@@ -33,9 +33,30 @@ pub(super) fn guide(figure: &Figure, placed: &[Option<Vec2>]) -> Vec<Vec2> {
 
 /// Points of any scale, turned into canvas units and put in the middle of the canvas.
 pub(super) fn fitted(points: &[Vec2]) -> Vec<Vec2> {
+    centred(points, fitting_scale(points))
+}
+
+/// Sketches of any unit, turned into canvas units and each put in the middle of its canvas: all at one scale, that of the
+/// largest, so that they can be compared.
+pub fn fit_to_canvas(sketches: &[&[Vec2]]) -> Vec<Vec<Vec2>> {
+    let scale = sketches
+        .iter()
+        .map(|points| fitting_scale(points))
+        .fold(f32::INFINITY, f32::min);
+    sketches
+        .iter()
+        .map(|points| centred(points, scale))
+        .collect()
+}
+
+fn fitting_scale(points: &[Vec2]) -> f32 {
     let (low, high) = bounds(points);
     let size = (high - low).max(Vec2::splat(f32::MIN_POSITIVE));
-    let scale = (FIGURE_HEIGHT / size.y).min(FIGURE_WIDTH / size.x);
+    (FIGURE_HEIGHT / size.y).min(FIGURE_WIDTH / size.x)
+}
+
+fn centred(points: &[Vec2], scale: f32) -> Vec<Vec2> {
+    let (low, high) = bounds(points);
     let centre = (low + high) / 2.0;
     points
         .iter()
@@ -88,6 +109,16 @@ mod tests {
         let points = fitted(&[Vec2::ZERO, Vec2::new(50.0, 1.0)]);
         let (low, high) = bounds(&points);
         assert!((high.x - low.x - FIGURE_WIDTH).abs() < 0.1);
+    }
+
+    #[test]
+    fn sketches_that_belong_together_keep_their_sizes() {
+        let (tall, low) = ([Vec2::ZERO, Vec2::Y * 2.0], [Vec2::ZERO, Vec2::Y]);
+        let fitted = fit_to_canvas(&[&tall, &low]);
+        let heights = [&fitted[0], &fitted[1]].map(|points| points[1].y - points[0].y);
+        assert!((heights[0] - FIGURE_HEIGHT).abs() < 0.1);
+        assert!((heights[1] - FIGURE_HEIGHT / 2.0).abs() < 0.1);
+        assert!(fit_to_canvas(&[]).is_empty());
     }
 
     #[test]

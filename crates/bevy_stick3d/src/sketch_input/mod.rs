@@ -18,7 +18,8 @@ pub use canvas::{
 };
 
 use canvas::nearest_on_canvas;
-pub use drawing::{DrawingChange, GRAB_RADIUS, SketchDrawing};
+pub use drawing::{DrawingChange, GRAB_RADIUS, Ink, SketchDrawing};
+pub use guide::fit_to_canvas;
 
 use crate::figure::{StickFigure, StickSketch};
 use crate::model_asset::StickModel;
