@@ -6,13 +6,13 @@
 mod scene;
 
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context as _;
 use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
-use bevy_stick3d::launch::{Launch, LaunchError};
+use bevy_stick3d::launch::{Launch, LaunchError, asset_place};
 use bevy_stick3d::prelude::*;
 use clap::Parser;
 
@@ -77,15 +77,6 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
             .add_systems(PostUpdate, frame_body.after(Stick3dSystems::Dress));
     })?;
     Ok(())
-}
-
-/// The folder of a model file, to load assets from, and its name in there.
-fn asset_place(model: &Path) -> anyhow::Result<(PathBuf, String)> {
-    let cannot = || format!("cannot read the model {}", model.display());
-    let model = std::fs::canonicalize(model).with_context(cannot)?;
-    let folder = model.parent().with_context(cannot)?;
-    let name = model.file_name().with_context(cannot)?;
-    Ok((folder.to_owned(), name.to_string_lossy().into_owned()))
 }
 
 /// The model is all that says which figure it is.

@@ -6,16 +6,15 @@
 mod scene;
 
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Context as _;
 use bevy::camera::primitives::Aabb;
 use bevy::gltf::GltfAssetLabel;
 use bevy::mesh::morph::MeshMorphWeights;
 use bevy::prelude::*;
 use bevy::world_serialization::WorldInstanceReady;
-use bevy_stick3d::launch::{Launch, LaunchError};
+use bevy_stick3d::launch::{Launch, LaunchError, asset_place};
 use bevy_stick3d::prelude::FigureStatus;
 use clap::Parser;
 
@@ -60,6 +59,7 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
         size_px: UVec2::new(1280, 720),
         screenshot: arguments.screenshot,
         asset_folder: Some(folder),
+        ..default()
     };
     let spawn = move |mut commands: Commands,
                       assets: Res<AssetServer>,
@@ -86,15 +86,6 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
             .add_systems(PostUpdate, follow.after(TransformSystems::Propagate));
     })?;
     Ok(())
-}
-
-/// The folder of a file, to load assets from, and its name in there.
-fn asset_place(file: &Path) -> anyhow::Result<(PathBuf, String)> {
-    let cannot = || format!("cannot read {}", file.display());
-    let file = std::fs::canonicalize(file).with_context(cannot)?;
-    let folder = file.parent().with_context(cannot)?;
-    let name = file.file_name().with_context(cannot)?;
-    Ok((folder.to_owned(), name.to_string_lossy().into_owned()))
 }
 
 fn play(

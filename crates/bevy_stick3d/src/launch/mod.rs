@@ -64,6 +64,26 @@ pub struct Series {
     pub every: u32,
 }
 
+/// The folder of a file, for [`Launch::asset_folder`], and the file's name in there, to load it as an asset.
+///
+/// # Errors
+/// Whatever the file system answers; the message names the file.
+pub fn asset_place(file: &Path) -> std::io::Result<(PathBuf, String)> {
+    let whole = std::fs::canonicalize(file).map_err(|error| {
+        std::io::Error::new(
+            error.kind(),
+            format!("cannot read {}: {error}", file.display()),
+        )
+    })?;
+    match (whole.parent(), whole.file_name()) {
+        (Some(folder), Some(name)) => Ok((folder.to_owned(), name.to_string_lossy().into_owned())),
+        _ => Err(std::io::Error::other(format!(
+            "{} is no file",
+            file.display()
+        ))),
+    }
+}
+
 /// Why an app did not start, or ended early.
 #[derive(Debug, Error)]
 #[non_exhaustive]
