@@ -20,10 +20,28 @@ static HORSE: LazyLock<Rig> = LazyLock::new(|| read("horse.glb"));
 static MAN: LazyLock<Guess> = LazyLock::new(|| guess(&HUMAN, "man").unwrap());
 static MARE: LazyLock<Guess> = LazyLock::new(|| guess(&HORSE, "mare").unwrap());
 
+/// Where an anchor is at rest; regressors are exact there.
+fn place(anchor: &Anchor, rig: &Rig) -> Vec3 {
+    let points: Vec<Vec3> = match anchor {
+        Anchor::Bones(names) => {
+            let head = |name| rig.skeleton.bones[rig.skeleton.bone_index(name).unwrap()].head;
+            names.iter().map(|name| head(name)).collect()
+        }
+        Anchor::Vertices(vertices) => {
+            let at = |&vertex: &u32| rig.mesh.positions[vertex as usize];
+            vertices.iter().map(at).collect()
+        }
+    };
+    points.iter().sum::<Vec3>() / points.len() as f32
+}
+
 fn assert_near(guess: &Guess, figure: &Figure, rig: &Rig, bar_m: f32) {
     assert_eq!(guess.faults, [], "{:?}", guess.notes);
     assert_eq!(guess.figure.path, figure.path);
-    let at = |figure: &Figure| regressor(figure, rig).unwrap().joints(&rig.mesh.positions);
+    let at = |figure: &Figure| -> Vec<Vec3> {
+        let anchors = figure.joints.iter().map(|joint| &joint.anchor);
+        anchors.map(|anchor| place(anchor, rig)).collect()
+    };
     let (guessed, made) = (at(&guess.figure), at(figure));
     for (joint, (guessed, made)) in figure.joints.iter().zip(guessed.iter().zip(&made)) {
         let miss_m = guessed.distance(*made);
@@ -190,8 +208,8 @@ fn hand_from(rig: &Rig, bone: &str) -> f32 {
         panic!("{:?}", guess.figure.joints[hand]);
     };
     assert!(regressor(&guess.figure, rig).is_ok());
-    let at = vertices.iter().map(|&v| rig.mesh.positions[v as usize]);
-    let middle = at.sum::<Vec3>() / vertices.len() as f32;
+    assert!(!vertices.is_empty());
+    let middle = place(&guess.figure.joints[hand].anchor, rig);
     middle.distance(rig.skeleton.bones[rig.skeleton.bone_index(bone).unwrap()].head)
 }
 
