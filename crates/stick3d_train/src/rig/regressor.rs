@@ -5,6 +5,8 @@
 //! at rest it shall hit it exactly, and the weights shall stay near a plain average, so that noise in
 //! the vertices is averaged out and not amplified.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec3, Quat, Vec3};
 use nalgebra::{DMatrix, DVector};
 use stick3d_figure::{Anchor, Figure, JointRegressor};
@@ -73,65 +75,77 @@ pub(crate) fn mean_of(vertices: &[u32], count: usize) -> Result<Vec<(u32, f32)>,
     }
 }
 
+/// Some vertices round a bone's head, with the share that each has in a plain average.
+type Ring = Vec<(u32, f64)>;
+
+/// Where to look for a ring, the best place first: low-poly meshes may have no vertex where weights change, or only a
+/// flat ring that the head is not in.
+const RINGS: [fn(usize, &Rig) -> Ring; 3] = [seam, slab, nearest];
+
 /// Weights whose mean follows the mean head of `bones`.
 fn fit(bones: &[usize], rig: &Rig) -> Result<Vec<(u32, f32)>, String> {
-    let mut start = std::collections::BTreeMap::new();
-    for &bone in bones {
-        let ring = ring(bone, rig);
-        let total: f64 = ring.iter().map(|&(_, share)| share).sum();
-        if ring.len() < LEAST_RING || total <= 0.0 {
-            let name = &rig.skeleton.bones[bone].name;
-            return Err(format!(
-                "fewer than {LEAST_RING} vertices surround the head of bone `{name}`"
-            ));
-        }
-        for (vertex, share) in ring {
-            *start.entry(vertex).or_insert(0.0) += share / total / bones.len() as f64;
+    let mut any = false;
+    for first in 0..RINGS.len() {
+        let Some(start) = plain_average(bones, rig, &RINGS[first..]) else {
+            continue;
+        };
+        any = true;
+        let (ring, plain): (Vec<u32>, Vec<f64>) = start.into_iter().unzip();
+        if let Some(weights) = solve(&ring, &plain, bones, rig) {
+            let weights = weights.into_iter().map(|weight| weight as f32);
+            return Ok(ring.into_iter().zip(weights).collect());
         }
     }
-    let (ring, plain): (Vec<u32>, Vec<f64>) = start.into_iter().unzip();
-    let weights = solve(&ring, &plain, bones, rig)
-        .ok_or_else(|| "the vertices round it lie in one plane with it".to_owned())?;
-    Ok(ring
-        .into_iter()
-        .zip(weights)
-        .map(|(vertex, weight)| (vertex, weight as f32))
-        .collect())
+    if any {
+        return Err("the vertices round it lie in one plane with it".to_owned());
+    }
+    let names: Vec<&str> = bones
+        .iter()
+        .map(|&bone| rig.skeleton.bones[bone].name.as_str())
+        .collect();
+    Err(format!(
+        "fewer than {LEAST_RING} vertices surround the head of bone `{}`",
+        names.join("` or `")
+    ))
 }
 
-/// The vertices round a bone's head, with the share that each has in a plain average.
-fn ring(bone: usize, rig: &Rig) -> Vec<(u32, f64)> {
-    let below: Vec<f32> = rig
-        .influences
-        .iter()
-        .map(|list| {
-            let hangs = |b: u16| rig.skeleton.is_below(usize::from(b), bone);
-            list.iter()
-                .filter(|(b, _)| hangs(*b))
-                .map(|&(_, w)| w)
-                .sum()
-        })
-        .collect();
-    let seam: Vec<(u32, f64)> = (0u32..)
-        .zip(&below)
-        .map(|(vertex, &share)| (vertex, share.min(1.0 - share)))
+/// The plain average over one ring for each bone, the first kind that is large enough.
+fn plain_average(
+    bones: &[usize],
+    rig: &Rig,
+    rings: &[fn(usize, &Rig) -> Ring],
+) -> Option<BTreeMap<u32, f64>> {
+    let mut shares = BTreeMap::new();
+    for &bone in bones {
+        let mut found = rings.iter().map(|ring| ring(bone, rig));
+        let ring = found.find(|ring| ring.len() >= LEAST_RING)?;
+        let total: f64 = ring.iter().map(|&(_, share)| share).sum();
+        for (vertex, share) in ring {
+            *shares.entry(vertex).or_insert(0.0) += share / total / bones.len() as f64;
+        }
+    }
+    Some(shares)
+}
+
+/// The vertices round a bone's head that follow what is above it as well as what is below.
+fn seam(bone: usize, rig: &Rig) -> Ring {
+    let below = rig.influences.iter().map(|list| -> f32 {
+        let hangs = |b: u16| rig.skeleton.is_below(usize::from(b), bone);
+        list.iter()
+            .filter(|(b, _)| hangs(*b))
+            .map(|&(_, w)| w)
+            .sum()
+    });
+    (0u32..)
+        .zip(below)
+        .map(|(vertex, share)| (vertex, share.min(1.0 - share)))
         .filter(|&(_, share)| share > RING_SHARE)
         .map(|(vertex, share)| (vertex, f64::from(share)))
-        .collect();
-    if seam.len() >= LEAST_RING {
-        return seam;
-    }
-    // Low-poly meshes may have no vertex where the weights change.
-    let slab = slab(bone, rig);
-    if slab.len() >= LEAST_RING {
-        slab
-    } else {
-        nearest(bone, rig)
-    }
+        .collect()
 }
 
 /// The vertices nearest to a bone's head, of those that follow it or the bone above.
-fn nearest(bone: usize, rig: &Rig) -> Vec<(u32, f64)> {
+fn nearest(bone: usize, rig: &Rig) -> Ring {
     let Bone { head, parent, .. } = rig.skeleton.bones[bone];
     let follows = |list: &[(u16, f32)]| {
         let near = |b: u16| usize::from(b) == bone || Some(usize::from(b)) == parent;
@@ -148,7 +162,7 @@ fn nearest(bone: usize, rig: &Rig) -> Vec<(u32, f64)> {
 }
 
 /// A slice of the vertices that mostly follow `bone`, across its head.
-fn slab(bone: usize, rig: &Rig) -> Vec<(u32, f64)> {
+fn slab(bone: usize, rig: &Rig) -> Ring {
     let bones = &rig.skeleton.bones;
     let head = bones[bone].head;
     let child = bones

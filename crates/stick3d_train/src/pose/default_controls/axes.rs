@@ -95,7 +95,11 @@ pub(super) fn axes(rig: &Rig, anatomy: &Anatomy, bone: usize) -> Axes {
         ];
         return Axes { joint, turns };
     }
-    let along = direction(rig, anatomy, bone);
+    let mut along = direction(rig, anatomy, bone);
+    if anatomy.mirror[bone] == Some(bone) {
+        // Exactly in the middle, so that values for one side are values for the other.
+        along = along.reject_from(left).try_normalize().unwrap_or(Vec3::Y);
+    }
     let bend = match (anatomy.roles[bone], joint) {
         // What is straight and never moves folds as knees and elbows of people do.
         (Some(Role::Limb(limb)), Joint::Hinge { .. } | Joint::End) => {
