@@ -47,7 +47,7 @@
 //! | --- | --- | --- |
 //! | `human` | yes | embeds the trained model of the man |
 //! | `horse` | yes | embeds the trained model of the horse |
-//! | `editor` | no | the pose editor, on `bevy_egui`; [`launch`], which takes pictures without a window |
+//! | `editor` | no | the pose editor, on `bevy_egui`; `launch`, which takes pictures without a window |
 //!
 //! # When something is wrong
 //! Nothing panics: [`Stick3dStatus`] says what is wrong with models and clips, [`FigureStatus`] what is wrong with a figure.

@@ -21,7 +21,7 @@
 //!
 //! # When something is wrong
 //! A clip that cannot be loaded or built leaves the figure as it is: [`FigureStatus`](crate::FigureStatus),
-//! [`Stick3dStatus`](crate::Stick3dStatus) and [`StickClips::problem`] say why.
+//! [`Stick3dStatus`] and [`StickClips::problem`] say why.
 
 mod clip_asset;
 mod clips;
