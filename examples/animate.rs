@@ -10,6 +10,7 @@ mod scene;
 use std::process::ExitCode;
 
 use bevy::prelude::*;
+use bevy_stick3d::launch::{self, LaunchError};
 use bevy_stick3d::prelude::*;
 use clap::Parser;
 use pictures::Pictures;
@@ -28,7 +29,7 @@ fn main() -> ExitCode {
             .add_systems(Startup, (scene::build, spawn_figures, spawn_camera))
             .add_systems(Update, pictures::pause_on_space);
     });
-    pictures::ended("animate", result)
+    launch::ended("animate", result, LaunchError::exit_code)
 }
 
 fn spawn_figures(mut commands: Commands, mut clips: ResMut<Assets<StickClip>>) -> Result {

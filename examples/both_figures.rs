@@ -5,12 +5,11 @@
 
 mod scene;
 
-use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use bevy::prelude::*;
-use bevy_stick3d::launch::Launch;
+use bevy_stick3d::launch::{self, Launch, LaunchError};
 use bevy_stick3d::prelude::*;
 use clap::Parser;
 
@@ -33,14 +32,7 @@ fn main() -> ExitCode {
         app.add_plugins(Stick3dPlugin)
             .add_systems(Startup, (scene::build, spawn_figures, spawn_camera));
     });
-    match ended {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // There is nowhere left to say it when this fails too.
-            let _ = writeln!(std::io::stderr(), "both_figures: {error}");
-            ExitCode::from(error.exit_code())
-        }
-    }
+    launch::ended("both_figures", ended, LaunchError::exit_code)
 }
 
 fn spawn_figures(mut commands: Commands) -> Result {

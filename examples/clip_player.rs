@@ -14,6 +14,7 @@ use std::process::ExitCode;
 use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
 use bevy_stick3d::HUMAN_MODEL;
+use bevy_stick3d::launch::{self, LaunchError};
 use bevy_stick3d::prelude::*;
 use clap::{Parser, ValueEnum};
 use pictures::Pictures;
@@ -82,7 +83,7 @@ fn main() -> ExitCode {
                 .add_systems(Update, (set_blend, mix).chain()),
         };
     });
-    pictures::ended("clip_player", result)
+    launch::ended("clip_player", result, LaunchError::exit_code)
 }
 
 /// One clip: nothing else is needed.

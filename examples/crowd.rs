@@ -13,6 +13,7 @@ use std::time::Instant;
 
 use bevy::prelude::*;
 use bevy_stick3d::animation::StartedClip;
+use bevy_stick3d::launch::{self, LaunchError};
 use bevy_stick3d::prelude::*;
 use clap::Parser;
 use pictures::Pictures;
@@ -77,7 +78,7 @@ fn main() -> ExitCode {
             .add_systems(Last, measure_frames);
         }
     });
-    pictures::ended("crowd", result)
+    launch::ended("crowd", result, LaunchError::exit_code)
 }
 
 fn spawn_crowd(mut commands: Commands, assets: &AssetServer, count: u16) {

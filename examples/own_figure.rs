@@ -5,14 +5,13 @@
 
 mod scene;
 
-use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context as _;
 use bevy::camera::primitives::Aabb;
 use bevy::prelude::*;
-use bevy_stick3d::launch::{Launch, LaunchError, asset_place};
+use bevy_stick3d::launch::{self, Launch, LaunchError, asset_place};
 use bevy_stick3d::prelude::*;
 use clap::Parser;
 
@@ -38,15 +37,9 @@ struct SketchFile {
 }
 
 fn main() -> ExitCode {
-    match run(Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // There is nowhere left to say it when this fails too.
-            let _ = writeln!(std::io::stderr(), "own_figure: {error:#}");
-            let code = error.downcast_ref().map_or(1, LaunchError::exit_code);
-            ExitCode::from(code)
-        }
-    }
+    launch::ended("own_figure", run(Arguments::parse()), |error| {
+        error.downcast_ref().map_or(1, LaunchError::exit_code)
+    })
 }
 
 fn run(arguments: Arguments) -> anyhow::Result<()> {

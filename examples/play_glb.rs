@@ -5,7 +5,6 @@
 
 mod scene;
 
-use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -14,7 +13,7 @@ use bevy::gltf::GltfAssetLabel;
 use bevy::mesh::morph::MeshMorphWeights;
 use bevy::prelude::*;
 use bevy::world_serialization::WorldInstanceReady;
-use bevy_stick3d::launch::{Launch, LaunchError, asset_place};
+use bevy_stick3d::launch::{self, Launch, LaunchError, asset_place};
 use bevy_stick3d::prelude::FigureStatus;
 use clap::Parser;
 
@@ -41,15 +40,9 @@ struct ToPlay {
 }
 
 fn main() -> ExitCode {
-    match run(Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // There is nowhere left to say it when this fails too.
-            let _ = writeln!(std::io::stderr(), "play_glb: {error:#}");
-            let code = error.downcast_ref().map_or(1, LaunchError::exit_code);
-            ExitCode::from(code)
-        }
-    }
+    launch::ended("play_glb", run(Arguments::parse()), |error| {
+        error.downcast_ref().map_or(1, LaunchError::exit_code)
+    })
 }
 
 fn run(arguments: Arguments) -> anyhow::Result<()> {

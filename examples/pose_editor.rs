@@ -5,12 +5,12 @@
 //! `cargo run --release --example pose_editor -- --sketch assets/sketches/wave.json --screenshot wave.png`
 //! `cargo run --release --example pose_editor -- --clip assets/clips/wave.clip.ron`
 
-use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use bevy::math::UVec2;
-use bevy_stick3d::editor::{self, EditorOptions};
+use bevy_stick3d::editor::{self, EditorError, EditorOptions};
+use bevy_stick3d::launch;
 use clap::Parser;
 
 /// Draw a stick figure, see the body.
@@ -80,12 +80,5 @@ fn main() -> ExitCode {
         screenshot: arguments.screenshot,
         size_px: Some(arguments.size),
     };
-    match editor::run(&options) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // There is nowhere left to say it when this fails too.
-            let _ = writeln!(std::io::stderr(), "pose_editor: {error}");
-            ExitCode::from(error.exit_code())
-        }
-    }
+    launch::ended("pose_editor", editor::run(&options), EditorError::exit_code)
 }

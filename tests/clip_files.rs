@@ -15,7 +15,7 @@ use bevy_stick3d::HUMAN_MODEL;
 use bevy_stick3d::animation::StartedClip;
 use bevy_stick3d::model_data::files::write_atomically;
 use bevy_stick3d::prelude::*;
-use support::{app, app_with, cheer, positions, status, t_pose};
+use support::{add_clip, app, app_with, cheer, positions, status, t_pose};
 
 /// A clip file of the man with these keys.
 fn clip_text(keys: &str) -> String {
@@ -269,10 +269,7 @@ fn a_clip_that_is_not_there_is_named_also_for_who_asks_late() {
         .sketch(0.5, cheer())
         .build()
         .unwrap();
-    let clip = app
-        .world_mut()
-        .resource_mut::<Assets<StickClip>>()
-        .add(clip);
+    let clip = add_clip(&mut app, clip);
     app.world_mut().entity_mut(late).insert(PlayStickClip(clip));
     app.update();
     assert_eq!(status(&app, late), FigureStatus::Ready);
@@ -286,10 +283,7 @@ fn a_clip_waits_for_its_model_and_is_built_for_every_model_anew() {
         .sketch(0.5, cheer())
         .build()
         .unwrap();
-    let clip = app
-        .world_mut()
-        .resource_mut::<Assets<StickClip>>()
-        .add(clip);
+    let clip = add_clip(&mut app, clip);
     let missing: Handle<StickModel> = app
         .world()
         .resource::<AssetServer>()

@@ -16,7 +16,7 @@ use bevy::prelude::*;
 use bevy_stick3d::StreamedBody;
 use bevy_stick3d::animation::DecodeOutOfSight;
 use bevy_stick3d::prelude::*;
-use support::{app_with, cheer, positions, t_pose, writes_in};
+use support::{add_clip, app_with, cheer, positions, t_pose, writes_in};
 
 /// An app that finds out what its camera sees, a man who raises and lowers his arms before it, and the camera.
 fn scene(bundle: impl Bundle) -> (App, Entity, Entity) {
@@ -31,10 +31,7 @@ fn scene(bundle: impl Bundle) -> (App, Entity, Entity) {
         .repeat(Repeat::PingPong)
         .build()
         .unwrap();
-    let clip = app
-        .world_mut()
-        .resource_mut::<Assets<StickClip>>()
-        .add(clip);
+    let clip = add_clip(&mut app, clip);
     let man = app
         .world_mut()
         .spawn((StickFigure::human(), PlayStickClip(clip), bundle))

@@ -17,7 +17,7 @@ use bevy_stick3d::animation::{
     ClipPlayback, LatentCurve, LatentProperty, STICK_TARGET, StartedClip,
 };
 use bevy_stick3d::prelude::*;
-use support::{TICK, app, app_with, cheer, positions, status, t_pose, writes_in};
+use support::{TICK, add_clip, app, app_with, cheer, positions, status, t_pose, writes_in};
 
 /// From arms stretched out to arms up in half a second, then as `finish` says.
 fn raise(
@@ -30,12 +30,6 @@ fn raise(
         .sketch(0.5, cheer())
         .extrapolation(Extrapolation::Hold);
     finish(builder).build().unwrap()
-}
-
-fn add_clip(app: &mut App, clip: StickClip) -> Handle<StickClip> {
-    app.world_mut()
-        .resource_mut::<Assets<StickClip>>()
-        .add(clip)
 }
 
 /// A man who plays a clip, after the first update.

@@ -1,11 +1,9 @@
-//! What the moving examples share: pictures from the command line, a pause, and how an example ends.
+//! What the moving examples share: pictures from the command line, and a pause.
 
-use std::io::Write as _;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use bevy::prelude::*;
-use bevy_stick3d::launch::{Launch, LaunchError, Series};
+use bevy_stick3d::launch::{Launch, Series};
 
 /// Pictures without a window.
 #[derive(clap::Args)]
@@ -44,18 +42,6 @@ impl Pictures {
                 every: self.every,
             }),
             asset_folder: Some(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets").into()),
-        }
-    }
-}
-
-/// The exit code, and one sentence where something went wrong.
-pub(crate) fn ended(example: &str, result: Result<(), LaunchError>) -> ExitCode {
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // There is nowhere left to say it when this fails too.
-            let _ = writeln!(std::io::stderr(), "{example}: {error}");
-            ExitCode::from(error.exit_code())
         }
     }
 }

@@ -68,6 +68,13 @@ pub(crate) fn cheer() -> StickSketch {
     StickSketch::new(points)
 }
 
+/// The handle of a clip that is an asset of the app from now on.
+pub(crate) fn add_clip(app: &mut App, clip: StickClip) -> Handle<StickClip> {
+    app.world_mut()
+        .resource_mut::<Assets<StickClip>>()
+        .add(clip)
+}
+
 /// The index of a joint of the man.
 pub(crate) fn joint(name: &str) -> usize {
     Figure::human().joint_index(name).unwrap()

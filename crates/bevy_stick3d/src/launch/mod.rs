@@ -4,8 +4,11 @@
 
 mod picture;
 
+use std::fmt::Display;
+use std::io::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -81,6 +84,23 @@ pub fn asset_place(file: &Path) -> std::io::Result<(PathBuf, String)> {
             "{} is no file",
             file.display()
         ))),
+    }
+}
+
+/// How a program ends: without a word, or with one sentence on standard error, its causes included, and the exit code that
+/// `code` gives the error.
+pub fn ended<E: Display>(
+    program: &str,
+    result: Result<(), E>,
+    code: impl FnOnce(&E) -> u8,
+) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // There is nowhere left to say it when this fails too.
+            let _ = writeln!(std::io::stderr(), "{program}: {error:#}");
+            ExitCode::from(code(&error))
+        }
     }
 }
 

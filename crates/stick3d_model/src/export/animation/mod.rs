@@ -6,11 +6,11 @@
 //! use stick3d_model::export::animation::{
 //!     AnimationMesh, DEFAULT_TOLERANCE_M, FrameSettings, sample_frames, save_glb_animation,
 //! };
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! # let (model, motion): (stick3d_model::Model, stick3d_model::Motion) = unimplemented!();
-//! # let mut inference = stick3d_model::Inference::new(&model)?;
-//! let frames = sample_frames(&motion, FrameSettings::default(), &mut inference)?;
-//! let mesh = AnimationMesh::of(&model, "walk");
+//! # use stick3d_model::{Inference, Model, Motion};
+//! # fn write(model: &Model, motion: &Motion) -> Result<(), Box<dyn std::error::Error>> {
+//! # let mut inference = Inference::new(model)?;
+//! let frames = sample_frames(motion, FrameSettings::default(), &mut inference)?;
+//! let mesh = AnimationMesh::of(model, "walk");
 //! let report = save_glb_animation("walk.glb".as_ref(), &mesh, frames, DEFAULT_TOLERANCE_M)?;
 //! # let _ = report;
 //! # Ok(())
