@@ -2,6 +2,7 @@
 
 mod error;
 mod file;
+mod limbs;
 mod views;
 
 use std::sync::LazyLock;
@@ -11,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 pub use error::FigureError;
 use file::FigureFile;
+pub use limbs::Limb;
 pub use views::Views;
 
 use crate::names;

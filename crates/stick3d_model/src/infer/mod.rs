@@ -1,5 +1,9 @@
 //! Running a model at frame rate: sketch to latent, latent to mesh, on plain arrays.
 
+mod alternatives;
+
+pub use alternatives::{Alternative, Alternatives};
+
 use glam::Vec3;
 use stick3d_figure::figure::Figure;
 use stick3d_figure::mesh::NormalAdjacency;
@@ -134,6 +138,26 @@ impl Inference {
         require_finite("sketch's latent", output)?;
         latent.copy_from_slice(output);
         Ok(())
+    }
+
+    /// The bodies that a sketch may mean, the likeliest first.
+    ///
+    /// # Errors
+    /// As [`Inference::encode`].
+    pub fn infer(
+        &mut self,
+        sketch: &Sketch,
+        alternatives: &mut Alternatives,
+    ) -> Result<(), InferError> {
+        alternatives.clear();
+        let alternative = alternatives.add();
+        alternative.latent.resize(self.latent_len, 0.0);
+        alternative
+            .joints
+            .resize(self.figure.joint_count(), Vec3::ZERO);
+        alternative.probability = 1.0;
+        self.encode(sketch, &mut alternative.latent)?;
+        self.joints(&alternative.latent, &mut alternative.joints)
     }
 
     /// The mesh of a latent (paper section 4.2, Decoder) and its unit normals; metres, the figure's root joint at the
