@@ -29,14 +29,24 @@ pub enum Architecture {
         head: Vec<usize>,
         /// Widths of the hidden layers of Encoder2D.
         encoder2d: Vec<usize>,
+        /// How many latents Encoder2D gives to a sketch: a drawing may mean several bodies.
+        #[serde(default = "one")]
+        hypotheses: usize,
     },
+}
+
+fn one() -> usize {
+    1
 }
 
 /// The layer widths that an [`Architecture`] has for one figure, each list from input to output.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NetworkSizes {
-    /// Encoder2D: sketch input vector to latent.
+    /// Encoder2D: sketch input vector to one latent, or to [several and their scores](NetworkSizes::hypotheses).
     pub encoder2d: Vec<usize>,
+    /// How many latents Encoder2D gives. With more than one its output is all latents, one after the other, then one score
+    /// each: the logarithm of its probability up to a constant.
+    pub hypotheses: usize,
     /// Encoder3D without its two output layers (mean and log-variance).
     pub encoder3d_trunk: Vec<usize>,
     /// Head of the decoder: latent to the final layer's coefficients.
@@ -62,6 +72,7 @@ impl Architecture {
                 encoder2d: chain(input_len, &[*hidden; 2], Some(latent_len)),
                 encoder3d_trunk: chain(3 * vertex_count, &[*hidden; 2], None),
                 head: chain(latent_len, &[*hidden; 2], None),
+                hypotheses: 1,
                 relu_after_head: true,
                 latent_len,
             },
@@ -70,14 +81,28 @@ impl Architecture {
                 encoder3d,
                 head,
                 encoder2d,
+                hypotheses,
             } => NetworkSizes {
-                encoder2d: chain(input_len, encoder2d, Some(latent_len)),
+                encoder2d: chain(
+                    input_len,
+                    encoder2d,
+                    Some(encoder2d_output_len(*hypotheses, latent_len)),
+                ),
+                hypotheses: *hypotheses,
                 encoder3d_trunk: chain(3 * rank, encoder3d, None),
                 head: chain(latent_len, head, Some(3 * rank)),
                 relu_after_head: false,
                 latent_len,
             },
         }
+    }
+}
+
+/// Length of Encoder2D's output; see [`NetworkSizes::hypotheses`].
+fn encoder2d_output_len(hypotheses: usize, latent_len: usize) -> usize {
+    match hypotheses {
+        0 | 1 => latent_len,
+        several => several * (latent_len + 1),
     }
 }
 
@@ -104,16 +129,23 @@ mod tests {
 
     #[test]
     fn basis_networks_meet_in_the_coefficients() {
-        let architecture = Architecture::Basis {
+        let mut architecture = Architecture::Basis {
             rank: 96,
             encoder3d: vec![512],
             head: vec![300],
             encoder2d: vec![768, 700],
+            hypotheses: 1,
         };
         let sizes = architecture.sizes(34, 256, 12_500);
         assert_eq!(sizes.encoder2d, [34, 768, 700, 256]);
         assert_eq!(sizes.encoder3d_trunk, [288, 512]);
         assert_eq!(sizes.head, [256, 300, 288]);
         assert_eq!(sizes.coefficient_len(), 288);
+        let Architecture::Basis { hypotheses, .. } = &mut architecture else {
+            unreachable!()
+        };
+        *hypotheses = 3;
+        let sizes = architecture.sizes(34, 256, 12_500);
+        assert_eq!(sizes.encoder2d, [34, 768, 700, 3 * 257]);
     }
 }

@@ -70,6 +70,21 @@ fn accumulate_tile(input: &[f32], rows: &[f32], row_len: usize, start: usize, ou
     }
 }
 
+/// The sum of products, in lanes.
+pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
+    const LANES: usize = 16;
+    let mut sums = [0.0_f32; LANES];
+    let (chunks_a, rest_a) = a.as_chunks::<LANES>();
+    let (chunks_b, rest_b) = b.as_chunks::<LANES>();
+    for (a, b) in chunks_a.iter().zip(chunks_b) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += a * b;
+        }
+    }
+    let rest: f32 = rest_a.iter().zip(rest_b).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f32>() + rest
+}
+
 /// Hyperbolic tangent as a ratio of polynomials, within 1e-6 of the exact one: branch-free, so that it vectorises.
 ///
 /// The coefficients are those of the widely used odd 13/6 fit (Eigen, XNNPACK).

@@ -249,7 +249,6 @@ fn check_networks(parts: &ModelParts) -> Result<(), ModelError> {
         metadata.vertex_count,
     );
     for found in [
-        encoder2d.widths().last().copied().unwrap_or(0),
         encoder3d.mean.output_len,
         encoder3d.log_variance.output_len,
         head.widths().first().copied().unwrap_or(0),

@@ -47,12 +47,14 @@ pub(crate) fn model(kind: Kind) -> Model {
             encoder3d: vec![12],
             head: vec![10],
             encoder2d: vec![16],
+            hypotheses: 1,
         },
         Kind::Basis | Kind::Skinned => Architecture::Basis {
             rank: RANK,
             encoder3d: vec![12],
             head: vec![10, 9],
             encoder2d: vec![16, 11],
+            hypotheses: 1,
         },
     };
     let sizes = architecture.sizes(figure.input_len(), LATENT, vertex_count);
@@ -114,6 +116,7 @@ fn statistics(numbers: &mut Numbers) -> TrainingStatistics {
             .collect(),
         far: 2.0,
         longest_edges_m: unique_edges(&triangles).iter().map(|_| 50.0).collect(),
+        answer_ways: vec![],
     };
     statistics.round_to_half();
     statistics

@@ -279,6 +279,10 @@ impl Arrays<'_> {
             whitening: self.half("statistics.whitening", 1)?.1,
             far: far.first().copied().unwrap_or(f32::NAN),
             longest_edges_m: self.half("statistics.longest_edges", 1)?.1,
+            answer_ways: match self.has("statistics.answer_ways") {
+                true => self.half("statistics.answer_ways", 1)?.1,
+                false => vec![],
+            },
         }))
     }
 

@@ -126,6 +126,7 @@ impl Arrays {
             whitening,
             far,
             longest_edges_m,
+            answer_ways,
         } = statistics;
         self.put_f32("statistics.mean", &[mean.len()], mean);
         self.put_half("statistics.whitening", &[whitening.len()], whitening);
@@ -135,6 +136,9 @@ impl Arrays {
             &[longest_edges_m.len()],
             longest_edges_m,
         );
+        if !answer_ways.is_empty() {
+            self.put_half("statistics.answer_ways", &[answer_ways.len()], answer_ways);
+        }
     }
 
     fn put_mesh(&mut self, parts: &ModelParts) {

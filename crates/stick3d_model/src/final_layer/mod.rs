@@ -2,6 +2,7 @@
 
 mod basis;
 mod dense;
+mod rotation_slope;
 mod rotations;
 mod skinned;
 mod subset;

@@ -73,23 +73,25 @@ impl Rotations {
     /// - `features`: `[3][3 · (bone_count + halves)]`
     pub fn expand(&self, code: &[f32], features: &mut [f32]) {
         let (from, to) = (self.code_columns(), self.feature_columns());
-        let column = |j: usize| Vec3::new(code[j], code[from + j], code[2 * from + j]);
         for bone in 0..self.bone_count {
-            put(
-                features,
-                to,
-                bone,
-                gram_schmidt(column(2 * bone), column(2 * bone + 1)),
-            );
+            let (u, v) = column_pair(code, from, bone);
+            put(features, to, bone, gram_schmidt(u, v));
         }
         for (index, [a, b]) in self.halves.iter().enumerate() {
-            let [a, b] = [*a, *b].map(|bone| get(features, to, usize::from(bone)));
+            let [a, b] = [*a, *b].map(|bone| turn_at(features, to, usize::from(bone)));
             put(features, to, self.bone_count + index, half_way(a, b));
         }
     }
 }
 
-fn get(features: &[f32], width: usize, slot: usize) -> Mat3 {
+/// The two raw columns of a bone in a code `[3][columns]`.
+pub(super) fn column_pair(code: &[f32], columns: usize, bone: usize) -> (Vec3, Vec3) {
+    let column = |j: usize| Vec3::new(code[j], code[columns + j], code[2 * columns + j]);
+    (column(2 * bone), column(2 * bone + 1))
+}
+
+/// The rotation at a place of the features `[3][width]`.
+pub(super) fn turn_at(features: &[f32], width: usize, slot: usize) -> Mat3 {
     let column = |j: usize| Vec3::new(features[j], features[width + j], features[2 * width + j]);
     Mat3::from_cols(column(3 * slot), column(3 * slot + 1), column(3 * slot + 2))
 }
@@ -150,14 +152,14 @@ mod tests {
         let code: Vec<f32> = (0..12).map(|i| (1.3 * i as f32).sin() * 3.0).collect();
         rotations.expand(&code, &mut features);
         for slot in 0..3 {
-            let r = get(&features, 9, slot);
+            let r = turn_at(&features, 9, slot);
             assert!((r * r.transpose()).abs_diff_eq(Mat3::IDENTITY, 1e-5) && r.determinant() > 0.0);
         }
         let given = [Mat3::from_rotation_x(0.7), Mat3::from_rotation_z(-1.1)];
         rotations.expand(&rotations.code(&given), &mut features);
         assert!(
-            get(&features, 9, 0).abs_diff_eq(given[0], 1e-6)
-                && get(&features, 9, 1).abs_diff_eq(given[1], 1e-6)
+            turn_at(&features, 9, 0).abs_diff_eq(given[0], 1e-6)
+                && turn_at(&features, 9, 1).abs_diff_eq(given[1], 1e-6)
         );
         rotations.expand(&[0.0; 12], &mut features);
         assert!(features.iter().all(|x| x.is_finite()));

@@ -13,6 +13,7 @@ pub struct Alternative {
     /// Its joints, metres, the root joint at the origin: one per joint of the figure, in the space of
     /// [`Inference::decode`](super::Inference::decode).
     pub joints: Vec<Vec3>,
+    log_weight: f64,
 }
 
 impl Alternative {
@@ -20,6 +21,19 @@ impl Alternative {
     #[must_use]
     pub fn toward_viewer_m(&self, limb: &Limb) -> f32 {
         self.joints[limb.end()].z - self.joints[limb.base].z
+    }
+
+    /// Mean distance between joints, metres.
+    #[must_use]
+    pub fn distance_m(&self, other: &Self) -> f32 {
+        let pairs = self.joints.iter().zip(&other.joints);
+        pairs.map(|(a, b)| a.distance(*b)).sum::<f32>() / self.joints.len().max(1) as f32
+    }
+
+    /// Largest distance between joints, metres.
+    fn farthest_m(&self, other: &Self) -> f32 {
+        let pairs = self.joints.iter().zip(&other.joints);
+        pairs.map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
     }
 }
 
@@ -50,12 +64,59 @@ impl Alternatives {
         self.len = 0;
     }
 
-    /// A place at the end for one more.
-    pub(super) fn add(&mut self) -> &mut Alternative {
+    /// Adds one; `log_weight` is the logarithm of its probability up to a constant.
+    pub(super) fn add(&mut self, latent: &[f32], joints: &[Vec3], log_weight: f64) {
         if self.len == self.list.len() {
             self.list.push(Alternative::default());
         }
+        let place = &mut self.list[self.len];
         self.len += 1;
-        &mut self.list[self.len - 1]
+        place.latent.clear();
+        place.latent.extend_from_slice(latent);
+        place.joints.clear();
+        place.joints.extend_from_slice(joints);
+        place.log_weight = log_weight;
+    }
+
+    /// Makes probabilities of the weights, merges those of which no joint is as far apart as `same_m`, and puts the first
+    /// answer first: the one that is nearest to all, each counted by its probability; then the likeliest.
+    pub(super) fn rank(&mut self, same_m: f32) {
+        let list = &mut self.list[..self.len];
+        list.sort_unstable_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
+        let highest = list.first().map_or(0.0, |first| first.log_weight);
+        let sum: f64 = list.iter().map(|a| (a.log_weight - highest).exp()).sum();
+        for alternative in list.iter_mut() {
+            alternative.probability = ((alternative.log_weight - highest).exp() / sum) as f32;
+        }
+        self.merge(same_m);
+        let list = &mut self.list[..self.len];
+        let regret = |candidate: &Alternative| -> f32 {
+            let others = list.iter();
+            others
+                .map(|other| other.probability * candidate.distance_m(other))
+                .sum()
+        };
+        let first = (0..list.len()).min_by(|a, b| regret(&list[*a]).total_cmp(&regret(&list[*b])));
+        if let Some(first) = first {
+            list[..=first].rotate_right(1);
+        }
+    }
+
+    fn merge(&mut self, same_m: f32) {
+        let mut kept = 0;
+        for index in 0..self.len {
+            let (before, rest) = self.list.split_at_mut(index);
+            let same = before[..kept]
+                .iter_mut()
+                .find(|other| other.farthest_m(&rest[0]) < same_m);
+            match same {
+                Some(other) => other.probability += rest[0].probability,
+                None => {
+                    self.list.swap(kept, index);
+                    kept += 1;
+                }
+            }
+        }
+        self.len = kept;
     }
 }

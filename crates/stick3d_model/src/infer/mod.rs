@@ -1,8 +1,16 @@
 //! Running a model at frame rate: sketch to latent, latent to mesh, on plain arrays.
 
 mod alternatives;
+mod gaussian;
+mod hypotheses;
+mod joint_map;
+mod noise;
+mod perceptron;
+mod refine;
+mod slope;
 
 pub use alternatives::{Alternative, Alternatives};
+pub use hypotheses::Hypotheses;
 
 use glam::Vec3;
 use stick3d_figure::figure::Figure;
@@ -10,12 +18,13 @@ use stick3d_figure::mesh::NormalAdjacency;
 use stick3d_figure::sketch::{Sketch, SketchError};
 use thiserror::Error;
 
+use self::joint_map::JointMap;
+use self::perceptron::Perceptron;
+use self::refine::{Body, Refiner};
 use crate::file::ModelError;
 use crate::final_layer::{FinalLayer, FinalScratch};
-use crate::kernels;
 use crate::latent::{LongestEdges, Probe, Trust};
 use crate::model::Model;
-use crate::weights::MlpWeights;
 
 /// Why one inference did not run. Nothing is written then.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -44,6 +53,9 @@ pub enum InferError {
     },
 }
 
+/// Bodies of which no joint is farther apart than this share of the figure's size are one.
+const SAME_SHARE: f32 = 0.02;
+
 /// The largest number that a latent or a coefficient may have: far beyond any body, far from overflow.
 const LARGEST: f32 = 1e9;
 
@@ -58,27 +70,14 @@ pub struct Inference {
     adjacency: NormalAdjacency,
     joints: JointMap,
     probe: Probe,
+    /// `None` where the joints are not linear in rotations or coefficients, or it is not known how answers are off.
+    refiner: Option<Refiner>,
     latent_len: usize,
     input: Vec<f32>,
-}
-
-/// A perceptron with the memory for its layers.
-#[derive(Debug, Clone)]
-struct Perceptron {
-    weights: MlpWeights,
-    values: Vec<Vec<f32>>,
-}
-
-/// From coefficients to joints.
-#[derive(Debug, Clone)]
-enum JointMap {
-    /// The joints as linear functions of the final layer's features: `[joint][rank]`.
-    Linear { rows: Vec<f32>, rank: usize },
-    /// The final layer is not linear: through the whole mesh.
-    Mesh {
-        regressor: stick3d_figure::regressor::JointRegressor,
-        positions: Vec<[f32; 3]>,
-    },
+    /// Memory for [`Inference::encode`].
+    alternatives: Alternatives,
+    /// Memory for one body's joints.
+    found: Vec<Vec3>,
 }
 
 impl Inference {
@@ -96,6 +95,7 @@ impl Inference {
             figure: model.figure().clone(),
             encoder2d: Perceptron::new(model.encoder2d()),
             head: Perceptron::new(model.head()),
+            refiner: refiner(model),
             joints: JointMap::new(model),
             probe: Probe::new(model)?,
             final_layer,
@@ -103,6 +103,8 @@ impl Inference {
             adjacency,
             latent_len: model.latent_len(),
             input: vec![0.0; model.figure().input_len()],
+            alternatives: Alternatives::default(),
+            found: vec![Vec3::ZERO; model.figure().joint_count()],
         })
     }
 
@@ -124,7 +126,7 @@ impl Inference {
         self.final_layer.vertex_count()
     }
 
-    /// The latent of a sketch (paper section 4.2, Encoder2D).
+    /// The likeliest latent of a sketch: that of the first of its [alternatives](Inference::infer).
     ///
     /// # Shapes
     /// - `latent`: `[latent_len]`
@@ -133,14 +135,31 @@ impl Inference {
     /// [`InferError::Sketch`] when the sketch is of another figure or all its joints coincide, [`InferError::Length`].
     pub fn encode(&mut self, sketch: &Sketch, latent: &mut [f32]) -> Result<(), InferError> {
         require("the latent", latent.len(), self.latent_len)?;
-        sketch.write_input_vector(&self.figure, &mut self.input)?;
-        let output = self.encoder2d.run(&self.input);
-        require_finite("sketch's latent", output)?;
-        latent.copy_from_slice(output);
+        let mut alternatives = std::mem::take(&mut self.alternatives);
+        let inferred = self.infer(sketch, &mut alternatives);
+        if let (Ok(()), Some(first)) = (&inferred, alternatives.first()) {
+            latent.copy_from_slice(&first.latent);
+        }
+        self.alternatives = alternatives;
+        inferred
+    }
+
+    /// What Encoder2D alone (paper section 4.2) holds for likeliest: not refined, and not weighed against the drawing.
+    ///
+    /// # Shapes
+    /// - `latent`: `[latent_len]`
+    ///
+    /// # Errors
+    /// As [`Inference::encode`].
+    pub fn encode_plain(&mut self, sketch: &Sketch, latent: &mut [f32]) -> Result<(), InferError> {
+        require("the latent", latent.len(), self.latent_len)?;
+        let output = encoder2d_output(&mut self.encoder2d, &mut self.input, &self.figure, sketch)?;
+        latent.copy_from_slice(Hypotheses::new(output, self.latent_len).likeliest());
         Ok(())
     }
 
-    /// The bodies that a sketch may mean, the likeliest first.
+    /// The bodies that a sketch may mean: one per hypothesis of Encoder2D, pulled onto the drawing, those that are alike
+    /// merged. Their order is that of [`Alternatives`].
     ///
     /// # Errors
     /// As [`Inference::encode`].
@@ -150,14 +169,37 @@ impl Inference {
         alternatives: &mut Alternatives,
     ) -> Result<(), InferError> {
         alternatives.clear();
-        let alternative = alternatives.add();
-        alternative.latent.resize(self.latent_len, 0.0);
-        alternative
-            .joints
-            .resize(self.figure.joint_count(), Vec3::ZERO);
-        alternative.probability = 1.0;
-        self.encode(sketch, &mut alternative.latent)?;
-        self.joints(&alternative.latent, &mut alternative.joints)
+        let output = encoder2d_output(&mut self.encoder2d, &mut self.input, &self.figure, sketch)?;
+        let hypotheses = Hypotheses::new(output, self.latent_len);
+        match (&mut self.refiner, &self.joints) {
+            (Some(refiner), JointMap::Linear(rows)) => {
+                let mut body = Body {
+                    head: &mut self.head,
+                    layer: &self.final_layer,
+                    scratch: &mut self.final_scratch,
+                    rows,
+                };
+                for found in refiner.refine(&hypotheses, sketch.points(), &mut body) {
+                    alternatives.add(&found.latent, &found.joints, found.log_weight);
+                }
+            }
+            _ => {
+                for index in 0..hypotheses.len().min(Alternatives::MOST) {
+                    let latent = hypotheses.latent(index);
+                    let code = coefficients(&mut self.head, self.latent_len, latent)?;
+                    self.joints.write(
+                        &self.final_layer,
+                        &mut self.final_scratch,
+                        code,
+                        &mut self.found,
+                    );
+                    let log_weight = f64::from(hypotheses.log_probability(index));
+                    alternatives.add(latent, &self.found, log_weight);
+                }
+            }
+        }
+        alternatives.rank(SAME_SHARE * self.figure.template_extent_m());
+        Ok(())
     }
 
     /// The mesh of a latent (paper section 4.2, Decoder) and its unit normals; metres, the figure's root joint at the
@@ -209,30 +251,12 @@ impl Inference {
     pub fn joints(&mut self, latent: &[f32], joints: &mut [Vec3]) -> Result<(), InferError> {
         require("the joints", joints.len(), self.figure.joint_count())?;
         let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
-        match &mut self.joints {
-            JointMap::Linear { rows, rank } => {
-                let features = self
-                    .final_layer
-                    .features(coefficients, &mut self.final_scratch);
-                for (joint, row) in joints.iter_mut().zip(rows.chunks_exact(*rank)) {
-                    let along = |axis: usize| -> f32 {
-                        row.iter()
-                            .zip(&features[axis * *rank..])
-                            .map(|(a, b)| a * b)
-                            .sum()
-                    };
-                    *joint = Vec3::new(along(0), along(1), along(2));
-                }
-            }
-            JointMap::Mesh {
-                regressor,
-                positions,
-            } => {
-                self.final_layer
-                    .evaluate(coefficients, &mut self.final_scratch, positions);
-                regressor.write_joints(positions, joints);
-            }
-        }
+        self.joints.write(
+            &self.final_layer,
+            &mut self.final_scratch,
+            coefficients,
+            joints,
+        );
         Ok(())
     }
 
@@ -269,6 +293,41 @@ impl Inference {
     }
 }
 
+fn refiner(model: &Model) -> Option<Refiner> {
+    let ways = &model.statistics()?.answer_ways;
+    if ways.is_empty() || model.final_layer().matrix_columns() == 0 {
+        return None;
+    }
+    let hypotheses = hypotheses_of(model);
+    Some(Refiner::new(
+        model.figure(),
+        model.head(),
+        model.final_layer(),
+        ways,
+        hypotheses,
+    ))
+}
+
+/// How many hypotheses a model's Encoder2D has, of which at most [`Alternatives::MOST`] are looked at.
+fn hypotheses_of(model: &Model) -> usize {
+    let output = model.encoder2d().widths().last().copied().unwrap_or(0);
+    let several = output / (model.latent_len() + 1);
+    several.clamp(1, Alternatives::MOST)
+}
+
+/// What Encoder2D gives to a sketch.
+fn encoder2d_output<'a>(
+    encoder2d: &'a mut Perceptron,
+    input: &mut [f32],
+    figure: &Figure,
+    sketch: &Sketch,
+) -> Result<&'a [f32], InferError> {
+    sketch.write_input_vector(figure, input)?;
+    let output = encoder2d.run(input);
+    require_finite("sketch's latent", output)?;
+    Ok(output)
+}
+
 fn coefficients<'a>(
     head: &'a mut Perceptron,
     latent_len: usize,
@@ -279,59 +338,6 @@ fn coefficients<'a>(
     let output = head.run(latent);
     require_finite("latent's mesh", output)?;
     Ok(output)
-}
-
-impl Perceptron {
-    fn new(weights: &MlpWeights) -> Self {
-        let values = weights
-            .layers
-            .iter()
-            .map(|layer| vec![0.0; layer.output_len])
-            .collect();
-        Self {
-            weights: weights.clone(),
-            values,
-        }
-    }
-
-    /// The output for `input`; empty when there is no layer.
-    fn run(&mut self, input: &[f32]) -> &[f32] {
-        for (index, layer) in self.weights.layers.iter().enumerate() {
-            let (before, after) = self.values.split_at_mut(index);
-            let value = before.last().map_or(input, Vec::as_slice);
-            let output = after[0].as_mut_slice();
-            output.copy_from_slice(&layer.bias);
-            kernels::accumulate(value, &layer.weight, output);
-            if self.weights.has_relu_after(index) {
-                output.iter_mut().for_each(|x| *x = x.max(0.0));
-            }
-        }
-        self.values.last().map_or(&[], Vec::as_slice)
-    }
-}
-
-impl JointMap {
-    fn new(model: &Model) -> Self {
-        let regressor = model.regressor();
-        let Some(matrix) = model.final_layer().matrix() else {
-            let positions = vec![[0.0; 3]; model.vertex_count()];
-            return Self::Mesh {
-                regressor: regressor.clone(),
-                positions,
-            };
-        };
-        let rank = model.final_layer().matrix_columns();
-        let mut rows = vec![0.0; regressor.joint_count() * rank];
-        for (out, row) in rows.chunks_exact_mut(rank).zip(&regressor.rows) {
-            for (vertex, weight) in row {
-                let matrix_row = &matrix[*vertex as usize * rank..][..rank];
-                out.iter_mut()
-                    .zip(matrix_row)
-                    .for_each(|(out, entry)| *out += weight * entry);
-            }
-        }
-        Self::Linear { rows, rank }
-    }
 }
 
 fn require(what: &'static str, found: usize, expected: usize) -> Result<(), InferError> {

@@ -17,6 +17,10 @@ pub struct TrainingStatistics {
     /// The longest that each edge of the mesh is on any training body, metres, in the order of
     /// [`unique_edges`](stick3d_figure::mesh::unique_edges).
     pub longest_edges_m: Vec<f32>,
+    /// The ways in which the latents of sketches were off those of the bodies drawn, `[ways][latent_len]`, each as long as
+    /// it was on average (root of the mean square), the longest first. Empty where that was not measured; sketches' bodies
+    /// are then not pulled onto the drawing.
+    pub answer_ways: Vec<f32>,
 }
 
 impl TrainingStatistics {
@@ -39,7 +43,11 @@ impl TrainingStatistics {
 
     /// Rounds the large arrays to half precision, as storing them does.
     pub fn round_to_half(&mut self) {
-        let arrays = [&mut self.whitening, &mut self.longest_edges_m];
+        let arrays = [
+            &mut self.whitening,
+            &mut self.longest_edges_m,
+            &mut self.answer_ways,
+        ];
         for number in arrays.into_iter().flatten() {
             *number = f16::from_f32(*number).to_f32();
         }
@@ -64,6 +72,13 @@ impl TrainingStatistics {
                 });
             }
         }
+        if !self.answer_ways.len().is_multiple_of(latent_len.max(1)) {
+            return Err(ModelError::Count {
+                what: "numbers in the last way that answers are off",
+                expected: latent_len,
+                found: self.answer_ways.len() % latent_len,
+            });
+        }
         if !(self.far.is_finite() && self.far > 0.0) {
             return Err(ModelError::NotFinite {
                 name: "statistics.far".to_owned(),
@@ -86,6 +101,7 @@ mod tests {
             whitening: vec![2.0, 0.5, 1.0, -0.3, 0.2, 4.0],
             far: 1.5,
             longest_edges_m: vec![],
+            answer_ways: vec![],
         }
     }
 

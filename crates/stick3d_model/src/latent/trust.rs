@@ -6,6 +6,7 @@ use stick3d_figure::sketch::Sketch;
 use super::TrainingStatistics;
 use super::easing::smoothstep;
 use crate::final_layer::{FinalLayer, FinalLayerError, FinalScratch};
+use crate::infer::Hypotheses;
 use crate::model::Model;
 
 /// Triangles whose edges stand for all edges of a mesh: so many that a 99th percentile of theirs is one of all.
@@ -106,8 +107,9 @@ impl Probe {
         let Ok(input) = input else {
             return vec![0.0; self.edges.len()];
         };
-        let latent = model.encoder2d().forward(&input);
-        self.decode(&model.head().forward(&latent));
+        let output = model.encoder2d().forward(&input);
+        let latent = Hypotheses::new(&output, model.latent_len()).likeliest();
+        self.decode(&model.head().forward(latent));
         self.lengths().collect()
     }
 

@@ -18,6 +18,9 @@ pub struct TrainConfig {
     pub hidden: HiddenLayers,
     /// Length of the latent.
     pub latent_len: usize,
+    /// How many latents Encoder2D gives to a sketch.
+    #[serde(default = "one")]
+    pub hypotheses: usize,
     /// The basis of the meshes.
     pub basis: BasisConfig,
     /// At most how many principal components of the meshes stand in for that basis; figures without a rig need them.
@@ -39,6 +42,10 @@ pub struct TrainConfig {
     pub loss: LossWeights,
     /// Epochs between two checkpoints.
     pub checkpoint_every: usize,
+}
+
+fn one() -> usize {
+    1
 }
 
 /// Widths of the hidden layers of the networks.
@@ -83,6 +90,9 @@ pub struct LossWeights {
     pub bones: f64,
     /// How many vertices stand for all of them in the vertex distance.
     pub probes: usize,
+    /// Weight of the cross entropy between the hypotheses' scores and which of them came nearest.
+    #[serde(default)]
+    pub score: f64,
 }
 
 impl TrainConfig {
@@ -97,9 +107,10 @@ impl TrainConfig {
             hidden: HiddenLayers {
                 encoder3d: vec![512, 512],
                 head: vec![512, 512],
-                encoder2d: vec![1024, 1024, 512],
+                encoder2d: vec![1024, 1024, 384],
             },
             latent_len: LATENT_LEN,
+            hypotheses: 8,
             basis: BasisConfig {
                 helpers: 32,
                 poses: 2000,
@@ -138,6 +149,7 @@ impl TrainConfig {
                 reprojection: per_length,
                 bones: 0.2,
                 probes: 300,
+                score: 1.0,
             },
             checkpoint_every: 2,
         }
@@ -160,8 +172,8 @@ impl TrainConfig {
     /// Checks that the parts fit together.
     pub(crate) fn validate(&self) -> Result<(), TrainError> {
         let fault = |problem: String| Err(TrainError::Config(problem));
-        if self.batch_size == 0 || self.latent_len == 0 {
-            return fault("batch size and latent length must be at least 1".to_owned());
+        if self.batch_size == 0 || self.latent_len == 0 || self.hypotheses == 0 {
+            return fault("batch size, latent length and hypotheses must be at least 1".to_owned());
         }
         if self
             .stages
@@ -185,6 +197,7 @@ impl TrainConfig {
             encoder3d,
             head,
             encoder2d,
+            hypotheses: self.hypotheses,
         }
     }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use stick3d_figure::sketch::SketchError;
-use stick3d_model::ModelError;
+use stick3d_model::{InferError, ModelError};
 use thiserror::Error;
 
 use crate::dataset::BasisError;
@@ -29,6 +29,9 @@ pub enum TrainError {
     /// A body gave a sketch that says nothing.
     #[error("a training body has no sketch: {0}")]
     Sketch(#[from] SketchError),
+    /// The trained networks give no bodies.
+    #[error(transparent)]
+    Infer(#[from] InferError),
     /// The loss is no number any more.
     #[error("the loss of stage {stage} is {loss} after epoch {epoch}; lower the learning rate")]
     Diverged {

@@ -69,6 +69,7 @@ pub(super) fn model(
         &parts,
         &material.bodies,
         config.rotations,
+        config.augmentation,
         config.seed,
     )?);
     Ok(Model::new(parts)?)

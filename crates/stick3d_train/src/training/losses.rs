@@ -1,10 +1,10 @@
-//! What is minimised.
+//! What is minimised in the autoencoder, and what all losses are made of.
 
 use burn::tensor::{Device, Tensor, TensorData};
 use stick3d_figure::figure::Figure;
 use stick3d_model::network::{reparameterize, rotation_features};
 
-use super::networks::{Autoencoder, Networks};
+use super::networks::Autoencoder;
 use super::{LossWeights, TrainError};
 use crate::dataset::{Batch, Shape};
 
@@ -23,7 +23,7 @@ pub(crate) struct CodeScale {
 /// The constant tensors of the losses.
 #[derive(Debug, Clone)]
 pub(crate) struct Losses {
-    weights: LossWeights,
+    pub(super) weights: LossWeights,
     extent_m: f64,
     mean: Tensor<2>,
     scale: f64,
@@ -51,9 +51,9 @@ pub(crate) struct Tensors {
 /// Points of bodies, `[batch, 3, points]`, metres.
 #[derive(Debug, Clone)]
 pub(crate) struct Points {
-    probes: Tensor<3>,
-    joints: Tensor<3>,
-    bones: Tensor<3>,
+    pub(super) probes: Tensor<3>,
+    pub(super) joints: Tensor<3>,
+    pub(super) bones: Tensor<3>,
 }
 
 /// Terms of one loss, for the log: name and value, unweighted.
@@ -103,13 +103,9 @@ impl Losses {
 
     /// Where normalised codes put the points.
     pub(crate) fn points(&self, codes: Tensor<2>) -> Points {
-        let [batch, len] = codes.dims();
-        let raw = codes * self.scale + self.mean.clone();
-        let features = match &self.turning {
-            Some((bones, halves)) => rotation_features(raw, *bones, halves),
-            None => raw.reshape([3 * batch, len / 3]),
-        };
+        let [batch, _] = codes.dims();
         let [_, count] = self.points.dims();
+        let features = self.features(codes);
         let all = features
             .matmul(self.points.clone())
             .reshape([batch, 3, count]);
@@ -118,6 +114,25 @@ impl Losses {
             probes: all.clone().narrow(2, 0, self.probes),
             joints: all.clone().narrow(2, self.probes, self.joints),
             bones: all.narrow(2, self.probes + self.joints, bones),
+        }
+    }
+
+    /// Where normalised codes put the joints, `[batch, 3, joints]`, metres.
+    pub(crate) fn joints(&self, codes: Tensor<2>) -> Tensor<3> {
+        let [batch, _] = codes.dims();
+        let rows = self.points.clone().narrow(1, self.probes, self.joints);
+        self.features(codes)
+            .matmul(rows)
+            .reshape([batch, 3, self.joints])
+    }
+
+    /// What points are linear in, `[batch · 3, features]`.
+    fn features(&self, codes: Tensor<2>) -> Tensor<2> {
+        let [batch, len] = codes.dims();
+        let raw = codes * self.scale + self.mean.clone();
+        match &self.turning {
+            Some((bones, halves)) => rotation_features(raw, *bones, halves),
+            None => raw.reshape([3 * batch, len / 3]),
         }
     }
 
@@ -144,47 +159,6 @@ impl Losses {
                 ("kl", divergence.detach()),
             ],
         )
-    }
-
-    /// Equation 2, and how far the body decoded from the sketch is from the body drawn.
-    pub(crate) fn sketch(
-        &self,
-        networks: &Networks,
-        target_mean: Tensor<2>,
-        batch: &Tensors,
-    ) -> (Tensor<1>, Terms) {
-        let latent = networks.encoder2d.forward(batch.inputs.clone());
-        let equation_2 = (latent.clone() - target_mean).square().mean();
-        let found = self.points(networks.vae.head.forward(latent));
-        let truth = batch.truth.clone();
-        let joint_difference = found.joints - truth.joints;
-        let vertices = length(found.probes - truth.probes).mean() * 100.0;
-        let reprojection = length(joint_difference.clone().narrow(1, 0, 2)).mean() * 100.0;
-        let joints = length(joint_difference).mean() * 100.0;
-        let true_lengths = length(truth.bones);
-        let bones =
-            ((length(found.bones) - true_lengths.clone()).abs() / true_lengths).mean() * 100.0;
-        let LossWeights {
-            latent,
-            vertices: v,
-            joints: j,
-            reprojection: r,
-            bones: b,
-            ..
-        } = self.weights;
-        let loss = equation_2.clone() * latent
-            + vertices.clone() * v
-            + joints.clone() * j
-            + reprojection.clone() * r
-            + bones.clone() * b;
-        let terms = vec![
-            ("latent", equation_2.detach()),
-            ("vertices_cm", vertices.detach()),
-            ("joints_cm", joints.detach()),
-            ("reprojection_cm", reprojection.detach()),
-            ("bones_percent", bones.detach()),
-        ];
-        (loss, terms)
     }
 
     /// The weight of the autoencoder's loss beside the sketch's.
@@ -226,7 +200,7 @@ impl Losses {
 }
 
 /// Lengths of vectors along dimension 1.
-fn length(vectors: Tensor<3>) -> Tensor<3> {
+pub(super) fn length(vectors: Tensor<3>) -> Tensor<3> {
     (vectors.square().sum_dim(1) + SMALLEST_SQUARE_M2).sqrt()
 }
 

@@ -9,6 +9,7 @@
 //! numbers depend on the seed and the step alone, so the result is the same to the last bit.
 
 mod adam;
+mod answers;
 mod checkpoint;
 mod config;
 mod error;
@@ -21,6 +22,7 @@ mod networks;
 mod plot;
 mod progress;
 mod run;
+mod sketch_loss;
 mod statistics;
 
 pub use config::{HiddenLayers, LossWeights, StageConfig, TrainConfig};

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use burn::optim::GradientsParams;
 use burn::tensor::{Device, Tensor};
+use rand::Rng as _;
 use stick3d_model::Model;
 use stick3d_model::digest::sha256_hex;
 
@@ -15,6 +16,7 @@ use super::log::{LossLog, LossRecord};
 use super::losses::{CodeScale, Losses, Tensors, Terms, values};
 use super::material::{Material, MeshTrainInput, TrainInput};
 use super::networks::{NetworkWeights, Networks};
+use super::sketch_loss::Relaxation;
 use super::{Progress, StageConfig, StageName, TrainConfig, TrainError, plot};
 use crate::dataset::{BasisFit, Batcher, BodySet, random, rounded};
 
@@ -224,9 +226,12 @@ impl<'a> Run<'a> {
             let tensors = self
                 .losses
                 .tensors(&batch, noise, &self.scale, &self.device);
-            let rate =
-                stage.learning_rate * schedule(state.epoch * count + index, stage.epochs * count);
-            let (stepped, terms) = self.step(networks, name, &tensors, &mut state.adam, rate)?;
+            let step = state.epoch * count + index;
+            let rate = stage.learning_rate * schedule(step, stage.epochs * count);
+            let done = step as f64 / (stage.epochs * count) as f64;
+            let relaxation = self.relaxation(name, (epoch, index), done, batch.len);
+            let (stepped, terms) =
+                self.step(networks, name, &tensors, &relaxation, &mut state.adam, rate)?;
             networks = stepped;
             for (term, value) in values(terms)? {
                 match sums.iter_mut().find(|(known, _)| known == term) {
@@ -249,12 +254,33 @@ impl<'a> Run<'a> {
         Ok((networks, record))
     }
 
+    /// What the hypotheses that are not the nearest learn in a step. In the beginning much, so that none is left behind.
+    fn relaxation(
+        &self,
+        stage: StageName,
+        (epoch, index): (u64, usize),
+        done: f64,
+        len: usize,
+    ) -> Relaxation {
+        const LEAST_SHARE: f64 = 0.03;
+        let share = match stage {
+            StageName::Encoder2d => LEAST_SHARE.max(0.5 * (1.0 - 1.5 * done)),
+            StageName::Autoencoder | StageName::Joint => LEAST_SHARE,
+        };
+        let mut rng = random(self.config.seed, "others", (epoch << 24) | index as u64);
+        let others = (0..len)
+            .map(|_| rng.random_range(0..self.config.hypotheses))
+            .collect();
+        Relaxation { share, others }
+    }
+
     /// One step of one stage: which loss, and which networks it moves.
     fn step(
         &self,
         networks: Networks,
         stage: StageName,
         batch: &Tensors,
+        relaxation: &Relaxation,
         adam: &mut Adam,
         rate: f64,
     ) -> Result<(Networks, Terms), TrainError> {
@@ -275,7 +301,9 @@ impl<'a> Run<'a> {
                     encoder2d,
                 };
                 let (mean, _) = frozen.vae.encoder3d.forward(batch.codes.clone());
-                let (loss, terms) = self.losses.sketch(&frozen, mean.detach(), batch);
+                let (loss, terms) = self
+                    .losses
+                    .sketch(&frozen, mean.detach(), batch, relaxation);
                 let (gradients, terms) = (loss.backward(), with_loss(loss, terms));
                 let encoder2d = frozen.encoder2d;
                 let gradients = GradientsParams::from_grads(gradients, &encoder2d);
@@ -286,7 +314,7 @@ impl<'a> Run<'a> {
                 let networks = Networks { vae, encoder2d };
                 let (autoencoder, mut terms) = self.losses.autoencoder(&networks.vae, batch);
                 let (mean, _) = networks.vae.encoder3d.forward(batch.codes.clone());
-                let (sketch, sketch_terms) = self.losses.sketch(&networks, mean, batch);
+                let (sketch, sketch_terms) = self.losses.sketch(&networks, mean, batch, relaxation);
                 terms.extend(sketch_terms);
                 let loss = sketch + autoencoder * self.losses.autoencoder_weight();
                 let (gradients, terms) = (loss.backward(), with_loss(loss, terms));

@@ -6,10 +6,12 @@ use rayon::prelude::*;
 use stick3d_figure::mesh::unique_edges;
 use stick3d_figure::sketch::Sketch;
 use stick3d_model::ModelParts;
+use stick3d_model::infer::Hypotheses;
 use stick3d_model::latent::TrainingStatistics;
 
 use super::TrainError;
-use crate::dataset::{BodySet, Rotations, drawn, random, turn_coefficients};
+use super::answers::answer_ways;
+use crate::dataset::{Augmentation, BodySet, Rotations, drawn, random, turn_coefficients};
 
 /// The most bodies that are looked at.
 const MOST_BODIES: usize = 4000;
@@ -24,6 +26,7 @@ pub(super) fn statistics(
     parts: &ModelParts,
     bodies: &BodySet,
     rotations: Rotations,
+    augmentation: Augmentation,
     seed: u64,
 ) -> Result<TrainingStatistics, TrainError> {
     let picks: Vec<usize> = (0..bodies.len.min(MOST_BODIES))
@@ -45,6 +48,7 @@ pub(super) fn statistics(
         whitening,
         far: 1.0,
         longest_edges_m: longest_edges(parts, bodies, &picks),
+        answer_ways: answer_ways(parts, bodies, rotations, augmentation, seed)?,
     };
     statistics.round_to_half();
     let mut distances: Vec<f32> = latents.iter().map(|z| statistics.distance(z)).collect();
@@ -66,7 +70,8 @@ fn latents_of(
     turn_coefficients(turn, code, &mut turned);
     let (of_body, _) = parts.encoder3d.forward(&turned);
     let sketch = Sketch::new(figure, drawn(turn, bodies.joints_of(body)))?;
-    let of_sketch = parts.encoder2d.forward(&sketch.input_vector(figure)?);
+    let output = parts.encoder2d.forward(&sketch.input_vector(figure)?);
+    let of_sketch = Hypotheses::new(&output, of_body.len()).likeliest().to_vec();
     Ok(vec![of_body, of_sketch])
 }
 
@@ -147,6 +152,7 @@ mod tests {
             whitening,
             far: 1.0,
             longest_edges_m: vec![],
+            answer_ways: vec![],
         };
         let squares = latents.iter().map(|z| statistics.distance(z).powi(2));
         let mean_square = squares.sum::<f32>() / latents.len() as f32;

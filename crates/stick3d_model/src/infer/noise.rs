@@ -1,0 +1,231 @@
+//! How a drawing may differ from a body's projection: joints off at random, bones drawn too long or too short, and any
+//! place and size.
+
+use glam::Vec2;
+use stick3d_figure::figure::Figure;
+
+/// How badly a drawing is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Noise {
+    /// Standard deviation of a joint's coordinate, share of the figure's size.
+    pub(super) joint: f64,
+    /// Standard deviation of the factor of a bone's length.
+    pub(super) bone: f64,
+}
+
+/// The drawings that are told apart, from exact to crooked.
+pub(super) const LEVELS: [Noise; 9] = {
+    const fn noise(joint: f64, bone: f64) -> Noise {
+        Noise { joint, bone }
+    }
+    [
+        noise(0.002, 0.01),
+        noise(0.002, 0.04),
+        noise(0.002, 0.09),
+        noise(0.006, 0.01),
+        noise(0.006, 0.09),
+        noise(0.014, 0.01),
+        noise(0.014, 0.09),
+        noise(0.022, 0.02),
+        noise(0.022, 0.12),
+    ]
+};
+
+/// A place anywhere: standard deviation, shares of the figure's size.
+const PLACE: f64 = 1.0;
+/// Any size: standard deviation of the factor.
+const SIZE: f64 = 0.5;
+
+/// A figure's bones as seen from its root.
+#[derive(Debug, Clone)]
+pub(super) struct Skeleton {
+    /// Bones as (nearer the root, farther from it).
+    bones: Vec<[usize; 2]>,
+    /// `[bone][joint]`: whether the joint moves when the bone gets longer.
+    beyond: Vec<Vec<bool>>,
+    /// Metres.
+    size_m: f64,
+}
+
+impl Skeleton {
+    pub(super) fn new(figure: &Figure, size_m: f32) -> Self {
+        let count = figure.joint_count();
+        let mut before = vec![None; count];
+        let mut order = vec![figure.root];
+        let mut index = 0;
+        while let Some(&from) = order.get(index) {
+            index += 1;
+            for &[a, b] in &figure.bones {
+                for (near, far) in [(a, b), (b, a)] {
+                    if near == from && before[far].is_none() && far != figure.root {
+                        before[far] = Some(near);
+                        order.push(far);
+                    }
+                }
+            }
+        }
+        let bones: Vec<[usize; 2]> = order
+            .iter()
+            .filter_map(|&far| Some([before[far]?, far]))
+            .collect();
+        let is_beyond = |joint: usize, far: usize| {
+            let chain = std::iter::successors(Some(joint), |joint| before[*joint]);
+            chain.into_iter().any(|joint| joint == far)
+        };
+        let beyond = bones
+            .iter()
+            .map(|&[_, far]| (0..count).map(|joint| is_beyond(joint, far)).collect())
+            .collect();
+        Self {
+            bones,
+            beyond,
+            size_m: f64::from(size_m),
+        }
+    }
+
+    /// Adds the covariance of a drawing's joints to `covariance`, `[joint, axis]` by `[joint, axis]`, square metres.
+    ///
+    /// `points` is the body's projection, metres; `strains` are per bone how much more than usual its length is to be
+    /// doubted (1: no more).
+    pub(super) fn add_covariance(
+        &self,
+        noise: Noise,
+        points: &[Vec2],
+        strains: &[f64],
+        covariance: &mut [f64],
+    ) {
+        let size = 2 * points.len();
+        let joint = (noise.joint * self.size_m).powi(2);
+        (0..size).for_each(|i| covariance[i * size + i] += joint);
+        for ((&[near, far], beyond), strain) in self.bones.iter().zip(&self.beyond).zip(strains) {
+            let along = points[far] - points[near];
+            let variance = noise.bone * noise.bone * strain;
+            add_square(covariance, size, variance, |joint, axis| {
+                if beyond[joint] {
+                    f64::from(along[axis])
+                } else {
+                    0.0
+                }
+            });
+        }
+        let place = (PLACE * self.size_m).powi(2);
+        add_square(covariance, size, place, |_, axis| {
+            f64::from(u8::from(axis == 0))
+        });
+        add_square(covariance, size, place, |_, axis| {
+            f64::from(u8::from(axis == 1))
+        });
+        let middle = points.iter().sum::<Vec2>() / points.len().max(1) as f32;
+        add_square(covariance, size, SIZE * SIZE, |joint, axis| {
+            f64::from((points[joint] - middle)[axis])
+        });
+    }
+
+    /// How far beyond its usual error each bone's length is: what is expected of its square, over the variance, given the
+    /// inverse covariance times the difference.
+    pub(super) fn update_strains(
+        &self,
+        noise: Noise,
+        points: &[Vec2],
+        solved: &[f64],
+        strains: &mut [f64],
+    ) {
+        /// Degrees of freedom of the t-distribution that bones' errors are taken to have.
+        const FREEDOM: f64 = 4.0;
+        for ((&[near, far], beyond), strain) in self.bones.iter().zip(&self.beyond).zip(strains) {
+            let along = points[far] - points[near];
+            let pull: f64 = beyond
+                .iter()
+                .enumerate()
+                .filter(|(_, beyond)| **beyond)
+                .map(|(joint, _)| {
+                    f64::from(along.x) * solved[2 * joint]
+                        + f64::from(along.y) * solved[2 * joint + 1]
+                })
+                .sum();
+            let error = noise.bone * *strain * pull;
+            *strain = (FREEDOM + error * error) / (FREEDOM + 1.0);
+        }
+    }
+
+    pub(super) fn bone_count(&self) -> usize {
+        self.bones.len()
+    }
+}
+
+/// Adds `variance` times the outer square of a vector over joints and axes.
+fn add_square(
+    covariance: &mut [f64],
+    size: usize,
+    variance: f64,
+    entry: impl Fn(usize, usize) -> f64,
+) {
+    for i in 0..size {
+        let along = variance * entry(i / 2, i % 2);
+        if along == 0.0 {
+            continue;
+        }
+        for j in 0..size {
+            covariance[i * size + j] += along * entry(j / 2, j % 2);
+        }
+    }
+}
+
+/// Moves and scales drawn points so that they come nearest to others (least squares, closed form).
+pub(super) fn align(drawn: &[Vec2], to: &[Vec2], aligned: &mut [Vec2]) {
+    let count = drawn.len().max(1) as f32;
+    let (from_middle, to_middle) = (
+        drawn.iter().sum::<Vec2>() / count,
+        to.iter().sum::<Vec2>() / count,
+    );
+    let (mut along, mut square, mut to_square) = (0.0, 0.0, 0.0);
+    for (a, b) in drawn.iter().zip(to) {
+        let (a, b) = (*a - from_middle, *b - to_middle);
+        along += a.dot(b);
+        square += a.length_squared();
+        to_square += b.length_squared();
+    }
+    let square = square.max(f32::MIN_POSITIVE);
+    // A drawing that has nothing in common with the body is at least as large.
+    let scale = (along / square).max(0.25 * (to_square / square).sqrt());
+    for (out, a) in aligned.iter_mut().zip(drawn) {
+        *out = to_middle + scale * (*a - from_middle);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn aligning_undoes_place_and_size() {
+        let to = Figure::human().template.clone();
+        let drawn: Vec<Vec2> = to
+            .iter()
+            .map(|p| 130.0 * *p + Vec2::new(40.0, -900.0))
+            .collect();
+        let mut aligned = vec![Vec2::ZERO; to.len()];
+        align(&drawn, &to, &mut aligned);
+        for (a, b) in aligned.iter().zip(&to) {
+            assert!(a.distance(*b) < 1e-4);
+        }
+    }
+
+    #[test]
+    fn a_longer_bone_moves_what_hangs_on_it() {
+        let human = Figure::human();
+        let skeleton = Skeleton::new(human, 1.7);
+        assert_eq!(skeleton.bone_count(), human.bones.len());
+        let elbow = human.joint_index("elbow_r").unwrap();
+        let bone = skeleton
+            .bones
+            .iter()
+            .position(|bone| bone[1] == elbow)
+            .unwrap();
+        let moved: Vec<&str> = (0..human.joint_count())
+            .filter(|joint| skeleton.beyond[bone][*joint])
+            .map(|joint| human.joints[joint].name.as_str())
+            .collect();
+        assert_eq!(moved, ["elbow_r", "hand_r"]);
+    }
+}

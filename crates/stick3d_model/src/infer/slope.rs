@@ -1,0 +1,134 @@
+//! How a body's joints move when its latent moves along the ways in which answers are usually off.
+
+use glam::Vec3;
+
+use super::joint_map::JointRows;
+use super::perceptron::Perceptron;
+use crate::final_layer::FinalLayer;
+use crate::kernels;
+use crate::weights::MlpWeights;
+
+/// The derivative of joints by offsets of the latent, through the head, and the memory for it.
+#[derive(Debug, Clone)]
+pub(super) struct Slopes {
+    /// The weights of all layers of the head but the first, `[output][input]`.
+    transposed: Vec<Vec<f32>>,
+    /// The first layer after the ways: `[output][rank]`.
+    first: Vec<f32>,
+    /// How many ways there are.
+    rank: usize,
+    arms: Vec<Vec3>,
+    /// Derivatives by the code: one `[coefficient_len]` for each of x, y and z.
+    by_code: [Vec<f32>; 3],
+    /// Derivatives by the outputs of the layers.
+    by_output: Vec<Vec<f32>>,
+}
+
+impl Slopes {
+    /// `ways`: `[rank][latent_len]`.
+    pub(super) fn new(head: &MlpWeights, layer: &FinalLayer, ways: &[f32]) -> Self {
+        let latent_len = head
+            .layers
+            .first()
+            .map_or(1, |layer| layer.input_len.max(1));
+        let rank = ways.len() / latent_len;
+        let coefficient_len = layer.coefficient_len();
+        let turning = layer
+            .rotations()
+            .map_or(0, |rotations| rotations.bone_count);
+        let transposed = head.layers.iter().skip(1).map(|layer| {
+            let (rows, columns) = (layer.input_len, layer.output_len);
+            transposed(&layer.weight, rows, columns)
+        });
+        let width = head.layers.first().map_or(0, |layer| layer.output_len);
+        let mut first = vec![0.0; rank * width];
+        for (way, out) in ways
+            .chunks_exact(latent_len)
+            .zip(first.chunks_exact_mut(width.max(1)))
+        {
+            kernels::accumulate(way, &head.layers[0].weight, out);
+        }
+        Self {
+            transposed: transposed.collect(),
+            first: self::transposed(&first, rank, width),
+            rank,
+            arms: vec![Vec3::ZERO; turning],
+            by_code: [(); 3].map(|()| vec![0.0; coefficient_len]),
+            by_output: head
+                .layers
+                .iter()
+                .map(|layer| vec![0.0; layer.output_len])
+                .collect(),
+        }
+    }
+
+    /// How many ways there are.
+    pub(super) fn rank(&self) -> usize {
+        self.rank
+    }
+
+    /// Writes the derivatives at what `head` ran on last.
+    ///
+    /// # Shapes
+    /// - `features`: what the final layer made of the head's output
+    /// - `slopes`: `[joint][axes][rank]`: x and y, or x, y and z
+    pub(super) fn write(
+        &mut self,
+        head: &Perceptron,
+        layer: &FinalLayer,
+        features: &[f32],
+        rows: &JointRows,
+        axes: usize,
+        slopes: &mut [f32],
+    ) {
+        let code = head.output();
+        for (joint, row) in rows.rows.chunks_exact(rows.rank).enumerate() {
+            let [x, y, z] = &mut self.by_code;
+            match layer.rotations() {
+                Some(rotations) => rotations.slopes(code, features, row, &mut self.arms, [x, y, z]),
+                None => {
+                    for (axis, slope) in [x, y, z].into_iter().enumerate() {
+                        slope.fill(0.0);
+                        slope[axis * rows.rank..][..rows.rank].copy_from_slice(row);
+                    }
+                }
+            }
+            for axis in 0..axes {
+                let out = &mut slopes[(joint * axes + axis) * self.rank..][..self.rank];
+                self.back(head, axis, out);
+            }
+        }
+    }
+
+    /// From the derivative by the code to that along the ways.
+    fn back(&mut self, head: &Perceptron, axis: usize, out: &mut [f32]) {
+        let last = self.by_output.len() - 1;
+        self.by_output[last].copy_from_slice(&self.by_code[axis]);
+        for index in (0..=last).rev() {
+            if head.weights().has_relu_after(index) {
+                let slopes = self.by_output[index].iter_mut();
+                for (slope, value) in slopes.zip(head.value(index)) {
+                    if *value <= 0.0 {
+                        *slope = 0.0;
+                    }
+                }
+            }
+            if index > 0 {
+                let (before, after) = self.by_output.split_at_mut(index);
+                before[index - 1].fill(0.0);
+                kernels::accumulate(
+                    &after[0],
+                    &self.transposed[index - 1],
+                    &mut before[index - 1],
+                );
+            }
+        }
+        out.fill(0.0);
+        kernels::accumulate(&self.by_output[0], &self.first, out);
+    }
+}
+
+fn transposed(matrix: &[f32], rows: usize, columns: usize) -> Vec<f32> {
+    let entry = |i: usize| matrix[(i % rows.max(1)) * columns + i / rows.max(1)];
+    (0..rows * columns).map(entry).collect()
+}
