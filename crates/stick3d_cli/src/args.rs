@@ -78,9 +78,21 @@ pub(crate) struct PoseArguments {
     /// Where to write the mesh; the ending chooses the format: glb, obj, ply, off or png
     #[arg(long, value_name = "FILE", required_unless_present = "json")]
     pub(crate) out: Option<PathBuf>,
-    /// Prints figure, joints (metres, x right, y up, z toward the viewer), latent and times as JSON
+    /// Which of the bodies that the sketch may mean is written; the likeliest is 1
+    #[arg(long, value_name = "N", default_value = "1", value_parser = from_one, requires = "out")]
+    pub(crate) alternative: usize,
+    /// Prints figure, joints (metres, x right, y up, z toward the viewer), limbs toward the viewer and away, latent, times
+    /// and all alternatives as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// A number that counts from 1.
+fn from_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(number) if number > 0 => Ok(number),
+        _ => Err("give a whole number; the first is 1".to_owned()),
+    }
 }
 
 #[derive(Debug, Args)]
