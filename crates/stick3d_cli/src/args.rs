@@ -48,7 +48,8 @@ pub(crate) enum Command {
     /// Measures a model on poses it never saw
     #[command(
         after_help = "Example:\n  stick3d eval --model assets/models/human.stick3d --json\n  \
-                              stick3d eval --model fox.stick3d --rig fox.glb"
+                              stick3d eval --model fox.stick3d --rig fox.glb\n  \
+                              stick3d eval --sheet answers.png --sketches assets/sketches"
     )]
     Eval(EvalArguments),
     /// Makes figure files: which joints a body has and how it is drawn
@@ -301,6 +302,12 @@ pub(crate) struct EvalArguments {
     /// Measures motions between and beyond sketched keys instead of single poses
     #[arg(long, conflicts_with = "meshes")]
     pub(crate) motion: bool,
+    /// Measures nothing, but draws test sketches with the bodies that they may mean into one picture
+    #[arg(long, value_name = "FILE.png", conflicts_with_all = ["meshes", "motion", "json"])]
+    pub(crate) sheet: Option<PathBuf>,
+    /// A folder of sketch files (JSON) to draw into the sheet instead, those of the model's figure
+    #[arg(long, value_name = "DIR", requires = "sheet")]
+    pub(crate) sketches: Option<PathBuf>,
     /// Or the meshes that the model was trained on
     #[command(flatten)]
     pub(crate) set: MeshFiles,

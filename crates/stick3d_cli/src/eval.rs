@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 use stick3d_model::Model;
 use stick3d_train::evaluate::{self, EvalConfig, EvalInput, PartReport, Recognition, Report, Row};
+use stick3d_train::pose::PoseLibrary;
 use stick3d_train::rig::Pose;
 use stick3d_train::training::Progress;
 
@@ -12,7 +13,7 @@ use crate::args::EvalArguments;
 use crate::corpus::Corpus;
 use crate::failure::{Failure, Outcome};
 use crate::progress::Bar;
-use crate::{eval_motion, inputs, mesh_set};
+use crate::{eval_motion, eval_sheet, inputs, mesh_set};
 
 /// Poses of the nearest-neighbour baseline: as many as the paper's data set has (section 4.1).
 const BASELINE_POSES: usize = 72;
@@ -23,6 +24,9 @@ const TEST_STREAMS: [u64; 2] = [0x7e57, 0xb40a_d7e5];
 /// Runs `stick3d eval`.
 pub(crate) fn run(arguments: &EvalArguments) -> Outcome {
     let model = inputs::model(arguments.model.as_deref())?;
+    if let Some(out) = &arguments.sheet {
+        return eval_sheet::run(&model, arguments, out);
+    }
     let bar = Bar::new();
     let config = EvalConfig {
         latency: true,
@@ -66,13 +70,22 @@ pub(crate) fn measure(
 ) -> Outcome<Report> {
     let (trained_on, held_out) = corpus.split_of(model)?;
     let baseline = spread(corpus.poses(&trained_on), BASELINE_POSES);
-    let input = EvalInput {
-        rig: &corpus.rig,
-        library: &baseline,
-        natural: corpus.natural(&held_out, TEST_STREAMS[0]),
-        broad: corpus.broad(TEST_STREAMS[1]),
-    };
+    let input = test_poses(corpus, &baseline, &held_out);
     evaluate::evaluate(model, input, config, progress).map_err(Failure::model)
+}
+
+/// What models of a body are measured on.
+pub(crate) fn test_poses<'a>(
+    corpus: &'a Corpus,
+    baseline: &'a [Pose],
+    held_out: &'a PoseLibrary,
+) -> EvalInput<'a> {
+    EvalInput {
+        rig: &corpus.rig,
+        library: baseline,
+        natural: corpus.natural(held_out, TEST_STREAMS[0]),
+        broad: corpus.broad(TEST_STREAMS[1]),
+    }
 }
 
 /// At most `count` of the poses, evenly spread over the library, which is ordered by subject.

@@ -158,6 +158,32 @@ fn an_alternative_is_chosen_by_its_number() {
 }
 
 #[test]
+fn a_sheet_is_drawn_of_the_sketches_of_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let copy = |name: &str| std::fs::copy(sketch(name), folder.path().join(name)).unwrap();
+    let sheet = |sketches: &str| {
+        let out = path("sheet.png");
+        let arguments = ["eval", "--sheet", &out, "--sketches", sketches];
+        stick3d().args(arguments).output().unwrap()
+    };
+    copy("horse_walk.json");
+    let none = sheet(&path(""));
+    assert_eq!(none.status.code(), Some(3));
+    assert!(error_of(&none).contains("1 are of other figures"));
+    copy("walk.json");
+    let output = sheet(&path(""));
+    assert!(output.status.success(), "{}", error_of(&output));
+    let one = image::open(path("sheet.png")).unwrap().to_rgb8();
+    copy("wave.json");
+    copy("walk_strokes.json");
+    assert!(sheet(&path("")).status.success());
+    let three = image::open(path("sheet.png")).unwrap().to_rgb8();
+    assert!(three.width() > 2 * one.width() && three.height() == one.height());
+    assert_eq!(sheet(&path("nowhere")).status.code(), Some(3));
+}
+
+#[test]
 fn the_figure_of_the_sketch_chooses_the_model() {
     let posed = |name: &str| -> Value {
         let output = pose(&sketch(name), &["--json"]);

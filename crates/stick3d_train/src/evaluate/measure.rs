@@ -3,14 +3,16 @@
 use std::time::Instant;
 
 use glam::{Quat, Vec2, Vec3};
+use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
+use stick3d_figure::figure::Figure;
 use stick3d_figure::sketch::Sketch;
 use stick3d_model::{Alternatives, Inference, Model};
 
 use super::recognition::readable_flat_pose;
 use super::report::{Latency, PartReport, Report, Row, TestSet};
 use super::spread::Spread;
-use super::ways::{WAYS, Way};
+use super::ways::{CROOKED, WAYS, Way};
 use super::{Baseline, Collector, EvalConfig, EvalError, Recognition};
 use crate::dataset::{Rotations, drawn, random, rounded};
 use crate::training::Progress;
@@ -219,20 +221,15 @@ impl<'a> Bench<'a> {
     }
 
     /// Turns a body, draws it in all ways, and compares what comes of it.
-    fn case(&mut self, part: &str, case: usize, (mesh, joints): &Body) -> Result<(), EvalError> {
+    fn case(&mut self, part: &str, case: usize, body: &Body) -> Result<(), EvalError> {
         let (figure, config) = (self.setup.model.figure(), self.setup.config);
         let mut rng = random(config.seed, part, case as u64);
-        let turn = Rotations::test_of(&figure.views).sample(&mut rng);
-        let turned = |points: &[Vec3]| points.iter().map(|point| turn * *point).collect();
-        let truth: Body = (turned(mesh), turned(joints));
-        let flat: Vec<Vec2> = drawn(Quat::IDENTITY, &truth.1);
-        for (index, way) in self.setup.ways.iter().enumerate() {
-            let sketch = way.draw(figure, flat.clone(), case, &mut rng)?;
-            self.compare(index, &sketch, &truth)?;
-            if index == 0 {
-                self.found.clean.push(sketch);
-            }
+        let (truth, sketches) = drawn_in_all_ways(figure, &self.setup.ways, body, case, &mut rng)?;
+        for (way, sketch) in sketches.iter().enumerate() {
+            self.compare(way, sketch, &truth)?;
         }
+        self.found.clean.extend(sketches.into_iter().next());
+        let flat: Vec<Vec2> = drawn(Quat::IDENTITY, &truth.1);
         let times = config.drawings_per_case;
         self.found.any_order.add(figure, &flat, times, &mut rng);
         Ok(())
@@ -278,6 +275,54 @@ impl<'a> Bench<'a> {
         }
         Ok(())
     }
+}
+
+/// A body turned at random, and its sketches, one per way of drawing.
+fn drawn_in_all_ways(
+    figure: &Figure,
+    ways: &[Way; WAYS],
+    (mesh, joints): &Body,
+    case: usize,
+    rng: &mut ChaCha8Rng,
+) -> Result<(Body, Vec<Sketch>), EvalError> {
+    let turn = Rotations::test_of(&figure.views).sample(rng);
+    let turned = |points: &[Vec3]| points.iter().map(|point| turn * *point).collect();
+    let truth: Body = (turned(mesh), turned(joints));
+    let flat: Vec<Vec2> = drawn(Quat::IDENTITY, &truth.1);
+    let sketches = ways
+        .iter()
+        .map(|way| way.draw(figure, flat.clone(), case, rng))
+        .collect::<Result<_, _>>()?;
+    Ok((truth, sketches))
+}
+
+/// The first sketches of every part, `count` in all, named after part, number and way: clean ones, and every third as
+/// crooked as they are measured.
+pub(super) fn sketches<C>(
+    model: &Model,
+    parts: &[Part<C>],
+    body: &dyn Fn(&C) -> Body,
+    config: &EvalConfig,
+    count: usize,
+) -> Result<Vec<(String, Sketch)>, EvalError> {
+    let figure = model.figure();
+    let ways = Way::all(figure);
+    let parts: Vec<&Part<C>> = parts.iter().filter(|part| !part.cases.is_empty()).collect();
+    let each = count.div_ceil(parts.len().max(1));
+    let mut list = vec![];
+    for part in parts {
+        for (number, case) in part.cases.iter().take(each).enumerate() {
+            let mut rng = random(config.seed, part.name, number as u64);
+            let (_, sketches) = drawn_in_all_ways(figure, &ways, &body(case), number, &mut rng)?;
+            let way = if number % 3 == 2 { CROOKED } else { 0 };
+            if let Some(sketch) = sketches.into_iter().nth(way) {
+                let label = format!("{} {}, {}", part.name, number + 1, ways[way].name);
+                list.push((label, sketch));
+            }
+        }
+    }
+    list.truncate(count);
+    Ok(list)
 }
 
 /// How long all answers to each sketch take.

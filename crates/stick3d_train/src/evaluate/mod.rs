@@ -20,6 +20,7 @@ mod motion;
 mod poses;
 mod recognition;
 mod report;
+mod sheet;
 mod spread;
 mod ways;
 
@@ -32,9 +33,10 @@ pub use motion::{
 pub use poses::{broad_poses, natural_poses};
 pub use recognition::Recognition;
 pub use report::{Latency, PartReport, Report, Row, TestSet};
+pub use sheet::answer_sheet;
 
 use serde::{Deserialize, Serialize};
-use stick3d_figure::sketch::SketchError;
+use stick3d_figure::sketch::{Sketch, SketchError};
 use stick3d_model::latent::PathError;
 use stick3d_model::metadata::topology_hash;
 use stick3d_model::{InferError, Model, ModelError};
@@ -101,6 +103,9 @@ pub enum EvalError {
     /// A test body has no sketch.
     #[error("a test body has no sketch: {0}")]
     Sketch(#[from] SketchError),
+    /// There is nothing to draw.
+    #[error("there is no sketch to draw a sheet of")]
+    NoSketches,
     /// The model gave no mesh.
     #[error(transparent)]
     Infer(#[from] InferError),
@@ -135,26 +140,45 @@ pub fn evaluate(
     config: &EvalConfig,
     progress: &dyn Progress,
 ) -> Result<Report, EvalError> {
-    let (rig, regressor, root) = (input.rig, model.regressor(), model.figure().root);
-    let vertex_count = rig.mesh.positions.len();
-    model.require_topology(&topology_hash(vertex_count, &rig.mesh.triangles))?;
-    let body = |pose: &Pose| -> Body {
-        let mut mesh = vec![];
-        let joints = posed(rig, regressor, root, pose, &mut mesh);
-        (mesh, joints)
-    };
+    let vertex_count = input.rig.mesh.positions.len();
+    model.require_topology(&topology_hash(vertex_count, &input.rig.mesh.triangles))?;
+    let body = |pose: &Pose| body_of(model, input.rig, pose);
     let baseline = Baseline::new(model.figure(), input.library.iter().map(body))?;
-    let parts = [
-        Part {
-            name: NATURAL,
-            cases: input.natural.take(config.natural_cases).collect(),
-        },
-        Part {
-            name: BROAD,
-            cases: input.broad.take(config.broad_cases).collect(),
-        },
-    ];
+    let parts = parts(
+        input.natural.take(config.natural_cases),
+        input.broad.take(config.broad_cases),
+    );
     measure(model, &baseline, &parts, &body, config, progress)
+}
+
+/// The first `count` sketches that [`evaluate`] measures by, named after their part and number: half of them natural, half
+/// broad; every third with joints jittered and bones scaled.
+///
+/// # Errors
+/// [`EvalError`].
+pub fn test_sketches(
+    model: &Model,
+    input: EvalInput<'_>,
+    config: &EvalConfig,
+    count: usize,
+) -> Result<Vec<(String, Sketch)>, EvalError> {
+    let parts = parts(input.natural.take(count), input.broad.take(count));
+    let body = |pose: &Pose| body_of(model, input.rig, pose);
+    measure::sketches(model, &parts, &body, config, count)
+}
+
+fn parts(
+    natural: impl Iterator<Item = Pose>,
+    broad: impl Iterator<Item = Pose>,
+) -> [Part<Pose>; 2] {
+    let [natural, broad] = [natural.collect(), broad.collect()];
+    [(NATURAL, natural), (BROAD, broad)].map(|(name, cases)| Part { name, cases })
+}
+
+fn body_of(model: &Model, rig: &Rig, pose: &Pose) -> Body {
+    let mut mesh = vec![];
+    let joints = posed(rig, model.regressor(), model.figure().root, pose, &mut mesh);
+    (mesh, joints)
 }
 
 /// Measures a model of registered meshes: on those of `set` that it did not learn from, beside the baseline among the

@@ -26,8 +26,10 @@ pub(super) struct Way {
     pub(super) beside_baseline: bool,
 }
 
-/// Ways to draw one figure.
+/// Ways to draw one figure,
 pub(super) const WAYS: usize = 5;
+/// and which of them disturbs both joints and bones.
+pub(super) const CROOKED: usize = 3;
 
 impl Way {
     /// All ways to draw a figure; the first is to draw it as it is. A small figure is jittered less ([`relative_size`]).
