@@ -48,7 +48,8 @@ pub(crate) enum Command {
     /// Measures a model on poses it never saw
     #[command(
         after_help = "Example:\n  stick3d eval --model assets/models/human.stick3d --json\n  \
-                              stick3d eval --model fox.stick3d --rig fox.glb"
+                              stick3d eval --model fox.stick3d --rig fox.glb\n  \
+                              stick3d eval --sheet answers.png --sketches assets/sketches"
     )]
     Eval(EvalArguments),
     /// Makes figure files: which joints a body has and how it is drawn
@@ -78,9 +79,21 @@ pub(crate) struct PoseArguments {
     /// Where to write the mesh; the ending chooses the format: glb, obj, ply, off or png
     #[arg(long, value_name = "FILE", required_unless_present = "json")]
     pub(crate) out: Option<PathBuf>,
-    /// Prints figure, joints (metres, x right, y up, z toward the viewer), latent and times as JSON
+    /// Which of the bodies that the sketch may mean is written; the likeliest is 1
+    #[arg(long, value_name = "N", default_value = "1", value_parser = from_one, requires = "out")]
+    pub(crate) alternative: usize,
+    /// Prints figure, joints (metres, x right, y up, z toward the viewer), limbs toward the viewer and away, latent, times
+    /// and all alternatives as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// A number that counts from 1.
+fn from_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(number) if number > 0 => Ok(number),
+        _ => Err("give a whole number; the first is 1".to_owned()),
+    }
 }
 
 #[derive(Debug, Args)]
@@ -289,6 +302,12 @@ pub(crate) struct EvalArguments {
     /// Measures motions between and beyond sketched keys instead of single poses
     #[arg(long, conflicts_with = "meshes")]
     pub(crate) motion: bool,
+    /// Measures nothing, but draws test sketches with the bodies that they may mean into one picture
+    #[arg(long, value_name = "FILE.png", conflicts_with_all = ["meshes", "motion", "json"])]
+    pub(crate) sheet: Option<PathBuf>,
+    /// A folder of sketch files (JSON) to draw into the sheet instead, those of the model's figure
+    #[arg(long, value_name = "DIR", requires = "sheet")]
+    pub(crate) sketches: Option<PathBuf>,
     /// Or the meshes that the model was trained on
     #[command(flatten)]
     pub(crate) set: MeshFiles,

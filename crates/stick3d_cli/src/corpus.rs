@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use stick3d_figure::figure::Figure;
 use stick3d_model::Model;
 use stick3d_train::dataset::PoseStream;
+use stick3d_train::evaluate::{broad_poses, natural_poses};
 use stick3d_train::pose::{Controls, PoseLibrary, PoseSampler, SampleKind, default_controls};
 use stick3d_train::rig::{Pose, Rig, RigFile, Weld};
 
@@ -198,5 +199,15 @@ impl Corpus {
         Box::new(std::iter::repeat_with(move || {
             sampler.sample(SampleKind::Mixed)
         }))
+    }
+
+    /// Endless natural poses to measure on: those of `held_out` and perturbations of them.
+    pub(crate) fn natural<'a>(&'a self, held_out: &'a PoseLibrary, seed: u64) -> PoseStream<'a> {
+        natural_poses(&self.rig, &self.controls, held_out, seed)
+    }
+
+    /// Endless broad poses to measure on: any inside the joints' limits.
+    pub(crate) fn broad(&self, seed: u64) -> PoseStream<'_> {
+        broad_poses(&self.rig, &self.controls, seed)
     }
 }

@@ -112,15 +112,35 @@ fn write_table(text: &mut String, report: &MotionReport) -> std::fmt::Result {
     )?;
     writeln!(
         text,
-        "\n{} at {:.2} m/s: {:.1} % of the steps of feet on the ground skate, {:.1} % with the body held still; \
-         below 5 cm, where feet swing too, {:.1} % and {:.1} %",
+        "\n{} at {:.2} m/s; steps of feet on the ground that skate, %:\n  \
+         {:24} {:>14} {:>14}",
         test.gaits.join(", "),
         gaits.speed_m_per_s,
-        gaits.grounded_percent,
-        gaits.still_percent,
-        gaits.grounded_below_5_cm_percent,
-        gaits.still_below_5_cm_percent
-    )
+        "",
+        "within 2.5 cm",
+        "within 5 cm"
+    )?;
+    let rows = [
+        (
+            "grounded",
+            gaits.grounded_percent,
+            gaits.grounded_below_5_cm_percent,
+        ),
+        (
+            "held still",
+            gaits.still_percent,
+            gaits.still_below_5_cm_percent,
+        ),
+        (
+            "the true motion, pinned",
+            gaits.true_percent,
+            gaits.true_below_5_cm_percent,
+        ),
+    ];
+    for (name, near, below) in rows {
+        writeln!(text, "  {name:24} {near:>14.1} {below:>14.1}")?;
+    }
+    Ok(())
 }
 
 fn write_row(text: &mut String, row: &BetweenReport) -> std::fmt::Result {

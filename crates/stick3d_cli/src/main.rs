@@ -11,6 +11,7 @@ mod bake;
 mod corpus;
 mod eval;
 mod eval_motion;
+mod eval_sheet;
 mod failure;
 mod figure;
 mod inputs;

@@ -53,7 +53,7 @@ pub(crate) fn train(arguments: &TrainArguments, folder: &Path, figure: &Figure) 
     )
     .map_err(anyhow::Error::from)?;
     finish(arguments, &trained, &bar, |model| {
-        measure(model, &set, &bar)
+        measure(model, &set, &EvalConfig::default(), &bar)
     })?;
     say_when(arguments, start);
     Ok(())
@@ -64,16 +64,17 @@ pub(crate) fn measure_folder(
     model: &Model,
     folder: &Path,
     files: &MeshFiles,
+    config: &EvalConfig,
     bar: &Bar,
 ) -> Outcome<Report> {
     let (set, said) = read(folder, files, model.figure())?;
     // Standard output is the report's.
     eprintln!("{said}");
-    measure(model, &set, bar)
+    measure(model, &set, config, bar)
 }
 
-fn measure(model: &Model, set: &MeshSet, bar: &Bar) -> Outcome<Report> {
-    evaluate_meshes(model, set, &EvalConfig::default(), bar).map_err(|error| match error {
+fn measure(model: &Model, set: &MeshSet, config: &EvalConfig, bar: &Bar) -> Outcome<Report> {
+    evaluate_meshes(model, set, config, bar).map_err(|error| match error {
         EvalError::NoHeldOut { .. } => Failure::input(error),
         other => Failure::model(other),
     })

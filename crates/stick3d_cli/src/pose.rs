@@ -4,11 +4,11 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::Vec3;
-use serde_json::{Map, Value, json};
-use stick3d_figure::figure::Figure;
+use serde_json::{Value, json};
+use stick3d_figure::figure::{Figure, Limb};
 use stick3d_figure::sketch::Sketch;
 use stick3d_model::export::{ExportError, ExportMesh, MeshFormat, save_mesh};
-use stick3d_model::{Inference, Model};
+use stick3d_model::{Alternative, Alternatives, Inference, Model};
 
 use crate::args::PoseArguments;
 use crate::failure::{Failure, Outcome};
@@ -28,50 +28,131 @@ pub(crate) fn run(arguments: &PoseArguments) -> Outcome {
     };
     let sketch = Sketch::from_json(model.figure(), &bytes)
         .map_err(|error| unusable(Failure::input(error)))?;
-    let body = Body::pose(&model, &sketch)?;
+    let answer = Answer::of(&model, &sketch)?;
     if let Some(output) = output {
-        output.write(&model, &body)?;
+        output.write(&model, answer.body(arguments.alternative)?)?;
     }
     if arguments.json {
-        println!("{}", body.to_json(model.figure()));
+        println!("{}", answer.to_json(model.figure()));
     }
     Ok(())
 }
 
-/// A posed body, its lowest vertex at height 0.
-struct Body {
-    latent: Vec<f32>,
-    positions: Vec<[f32; 3]>,
-    normals: Vec<[f32; 3]>,
-    joints: Vec<Vec3>,
+/// All bodies that a sketch may mean, the likeliest first, and how long they took.
+struct Answer {
+    alternatives: Alternatives,
+    bodies: Vec<Body>,
     encode_s: f64,
+    infer_s: f64,
     decode_s: f64,
 }
 
-impl Body {
-    fn pose(model: &Model, sketch: &Sketch) -> Outcome<Self> {
+/// A posed body, its lowest vertex at height 0.
+struct Body {
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    joints: Vec<Vec3>,
+}
+
+impl Answer {
+    fn of(model: &Model, sketch: &Sketch) -> Outcome<Self> {
         let mut inference = Inference::new(model).map_err(Failure::model)?;
+        let mut alternatives = Alternatives::default();
+        let mut latent = vec![0.0; inference.latent_len()];
+        let start = Instant::now();
+        inference
+            .encode(sketch, &mut latent)
+            .map_err(Failure::input)?;
+        let encode_s = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        inference
+            .infer(sketch, &mut alternatives)
+            .map_err(Failure::input)?;
+        let infer_s = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let all = alternatives.as_slice().iter();
+        let bodies: Vec<Body> = all
+            .map(|alternative| Body::of(alternative, &mut inference))
+            .collect::<Outcome<_>>()?;
+        // One body's share: what a game has to wait for.
+        let decode_s = start.elapsed().as_secs_f64() / bodies.len().max(1) as f64;
+        Ok(Self {
+            alternatives,
+            bodies,
+            encode_s,
+            infer_s,
+            decode_s,
+        })
+    }
+
+    /// The body of an alternative; they count from 1.
+    fn body(&self, number: usize) -> Outcome<&Body> {
+        let body = number.checked_sub(1).and_then(|at| self.bodies.get(at));
+        body.ok_or_else(|| {
+            Failure::usage(anyhow::anyhow!(
+                "there is no alternative {number}: this sketch may mean {} in all; give --alternative a number from 1 to {}",
+                match self.bodies.len() {
+                    1 => "one body".to_owned(),
+                    count => format!("{count} bodies"),
+                },
+                self.bodies.len(),
+            ))
+        })
+    }
+
+    /// The first alternative, with all of them after it.
+    fn to_json(&self, figure: &Figure) -> Value {
+        let limbs = figure.limbs();
+        let all = self.alternatives.as_slice().iter().zip(&self.bodies);
+        let alternatives: Vec<Value> = all
+            .map(|(alternative, body)| {
+                json!({
+                    "probability": alternative.probability,
+                    "joints": named(figure, &body.joints),
+                    "limbs": pointing(figure, &limbs, alternative),
+                    "latent": alternative.latent,
+                })
+            })
+            .collect();
+        let of_first = |key: &str| alternatives.first().map(|first| first[key].clone());
+        json!({
+            "figure": figure.name,
+            "joints": of_first("joints"),
+            "limbs": of_first("limbs"),
+            "latent": of_first("latent"),
+            "seconds": {"encode": self.encode_s, "infer": self.infer_s, "decode": self.decode_s},
+            "alternatives": alternatives,
+        })
+    }
+}
+
+/// Joints by their names, metres.
+fn named(figure: &Figure, joints: &[Vec3]) -> Value {
+    let joints = figure.joints.iter().zip(joints);
+    let joints = joints.map(|(joint, at)| (joint.name.clone(), json!(at.to_array())));
+    Value::Object(joints.collect())
+}
+
+/// For every limb, by the name of the joint at its end, whether it points toward the viewer or away.
+fn pointing(figure: &Figure, limbs: &[Limb], alternative: &Alternative) -> Value {
+    let limbs = limbs.iter().map(|limb| {
+        let toward = alternative.toward_viewer_m(limb) >= 0.0;
+        let says = if toward { "toward" } else { "away" };
+        (figure.joints[limb.end()].name.clone(), json!(says))
+    });
+    Value::Object(limbs.collect())
+}
+
+impl Body {
+    fn of(alternative: &Alternative, inference: &mut Inference) -> Outcome<Self> {
         let vertex_count = inference.vertex_count();
         let mut body = Self {
-            latent: vec![0.0; inference.latent_len()],
             positions: vec![[0.0; 3]; vertex_count],
             normals: vec![[0.0; 3]; vertex_count],
-            joints: vec![Vec3::ZERO; model.figure().joint_count()],
-            encode_s: 0.0,
-            decode_s: 0.0,
+            joints: alternative.joints.clone(),
         };
-        let start = Instant::now();
         inference
-            .encode(sketch, &mut body.latent)
-            .map_err(Failure::input)?;
-        body.encode_s = start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        inference
-            .decode(&body.latent, &mut body.positions, &mut body.normals)
-            .map_err(Failure::model)?;
-        body.decode_s = start.elapsed().as_secs_f64();
-        inference
-            .joints(&body.latent, &mut body.joints)
+            .decode(&alternative.latent, &mut body.positions, &mut body.normals)
             .map_err(Failure::model)?;
         body.stand_on_ground();
         Ok(body)
@@ -87,21 +168,6 @@ impl Body {
             .iter_mut()
             .for_each(|position| position[1] -= lowest);
         self.joints.iter_mut().for_each(|joint| joint.y -= lowest);
-    }
-
-    fn to_json(&self, figure: &Figure) -> Value {
-        let joints: Map<String, Value> = figure
-            .joints
-            .iter()
-            .zip(&self.joints)
-            .map(|(joint, at)| (joint.name.clone(), json!(at.to_array())))
-            .collect();
-        json!({
-            "figure": figure.name,
-            "joints": joints,
-            "latent": self.latent,
-            "seconds": {"encode": self.encode_s, "decode": self.decode_s},
-        })
     }
 }
 

@@ -70,8 +70,9 @@ fn json_tells_joints_latent_and_times() {
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(json["joints"].as_object().unwrap().len(), 11);
     assert_eq!(json["latent"].as_array().unwrap().len(), 256);
-    assert!(json["seconds"]["encode"].as_f64().unwrap() > 0.0);
-    assert!(json["seconds"]["decode"].as_f64().unwrap() > 0.0);
+    for step in ["encode", "infer", "decode"] {
+        assert!(json["seconds"][step].as_f64().unwrap() > 0.0, "{step}");
+    }
     let [neck, abdomen] = ["neck", "abdomen"].map(|name| joint(&json, name));
     assert!(neck[1] > abdomen[1] + 0.3, "he stands upright");
     for hand in ["hand_r", "hand_l"] {
@@ -90,6 +91,96 @@ fn json_tells_joints_latent_and_times() {
             "{foot} is near the ground"
         );
     }
+}
+
+#[test]
+fn json_tells_all_alternatives_the_answer_first() {
+    for (name, limbs) in [("wave.json", 5), ("horse_walk.json", 6)] {
+        let output = pose(&sketch(name), &["--json"]);
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let alternatives = json["alternatives"].as_array().unwrap();
+        assert!((1..=8).contains(&alternatives.len()));
+        for key in ["joints", "limbs", "latent"] {
+            assert_eq!(json[key], alternatives[0][key], "{key}");
+        }
+        let probability = |of: &Value| of["probability"].as_f64().unwrap();
+        let sum: f64 = alternatives.iter().map(probability).sum();
+        assert!((sum - 1.0).abs() < 1e-3, "{sum}");
+        assert!(alternatives.is_sorted_by(|a, b| probability(a) >= probability(b)));
+        for alternative in alternatives {
+            assert_eq!(alternative["limbs"].as_object().unwrap().len(), limbs);
+            let height = |name: &String| joint(alternative, name)[1];
+            let names = alternative["joints"].as_object().unwrap().keys();
+            let lowest = names.map(height).fold(f64::INFINITY, f64::min);
+            assert!((0.0..0.3).contains(&lowest), "it stands on the ground");
+        }
+    }
+    let output = pose(&sketch("horse_walk.json"), &["--json"]);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    // Its front legs hang on the shoulder.
+    let deep = |name: &str| joint(&json, name)[2] - joint(&json, "shoulder")[2];
+    for foot in ["foot_fr", "foot_fl"] {
+        let toward = if deep(foot) >= 0.0 { "toward" } else { "away" };
+        assert_eq!(json["limbs"][foot], toward, "{foot}");
+    }
+}
+
+#[test]
+fn an_alternative_is_chosen_by_its_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.obj");
+    let write = |number: &str| {
+        let out = ["--out", path.to_str().unwrap(), "--alternative", number];
+        pose(&sketch("walk.json"), &out)
+    };
+    let first = write("1");
+    assert!(first.status.success(), "{}", error_of(&first));
+    let count = {
+        let output = pose(&sketch("walk.json"), &["--json"]);
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        json["alternatives"].as_array().unwrap().len()
+    };
+    let last = write(&count.to_string());
+    assert!(last.status.success(), "{}", error_of(&last));
+    std::fs::remove_file(&path).unwrap();
+    let beyond = write(&(count + 1).to_string());
+    assert_eq!(beyond.status.code(), Some(2), "{}", error_of(&beyond));
+    let said = error_of(&beyond);
+    assert!(said.contains(&format!("from 1 to {count}")), "{said}");
+    assert_eq!(write("0").status.code(), Some(2));
+    assert!(!path.exists());
+    let unused = pose(&sketch("walk.json"), &["--json", "--alternative", "1"]);
+    assert_eq!(
+        unused.status.code(),
+        Some(2),
+        "it chooses what --out writes"
+    );
+}
+
+#[test]
+fn a_sheet_is_drawn_of_the_sketches_of_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let copy = |name: &str| std::fs::copy(sketch(name), folder.path().join(name)).unwrap();
+    let sheet = |sketches: &str| {
+        let out = path("sheet.png");
+        let arguments = ["eval", "--sheet", &out, "--sketches", sketches];
+        stick3d().args(arguments).output().unwrap()
+    };
+    copy("horse_walk.json");
+    let none = sheet(&path(""));
+    assert_eq!(none.status.code(), Some(3));
+    assert!(error_of(&none).contains("1 are of other figures"));
+    copy("walk.json");
+    let output = sheet(&path(""));
+    assert!(output.status.success(), "{}", error_of(&output));
+    let one = image::open(path("sheet.png")).unwrap().to_rgb8();
+    copy("wave.json");
+    copy("walk_strokes.json");
+    assert!(sheet(&path("")).status.success());
+    let three = image::open(path("sheet.png")).unwrap().to_rgb8();
+    assert!(three.width() > 2 * one.width() && three.height() == one.height());
+    assert_eq!(sheet(&path("nowhere")).status.code(), Some(3));
 }
 
 #[test]

@@ -263,9 +263,21 @@ fn a_rig_alone_is_trained_and_measured() {
         String::from_utf8_lossy(&output.stderr)
     );
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert!(report["test"]["library_cases"].as_u64().unwrap() > 0);
-    let mean = |of: &str| report[of][0]["all"]["vertex_mean_cm"].as_f64().unwrap();
-    assert!(mean("model") > 0.0 && mean("baseline") > 0.0);
+    let parts = report["parts"].as_array().unwrap();
+    let names = parts.iter().map(|part| part["name"].as_str().unwrap());
+    assert_eq!(names.collect::<Vec<_>>(), ["natural", "broad"]);
+    for part in parts {
+        assert_eq!(part["cases"], 400);
+        let mean = |answer: &str| {
+            let rows = part["rows"].as_array().unwrap().iter();
+            let mut clean = rows.filter(|row| row["answer"] == answer && row["drawn"] == "clean");
+            let metrics = &clean.next().unwrap()["metrics"];
+            metrics["vertex_mean_cm"].as_f64().unwrap()
+        };
+        assert!(mean("best alternative") > 0.0 && mean("nearest neighbour") > 0.0);
+        assert!(mean("best alternative") <= mean("first answer"));
+    }
+    assert!(report["latency"]["p99_ms"].as_f64() >= report["latency"]["p50_ms"].as_f64());
     // Poses that the model kept apart are not known without the rig's own ones.
     let output = stick3d(&[
         "eval",

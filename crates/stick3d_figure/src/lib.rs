@@ -52,8 +52,8 @@ pub mod preview;
 pub mod recognize;
 pub mod regressor;
 pub mod scribble;
-#[cfg(test)]
-pub(crate) mod simulate;
+#[cfg(any(test, feature = "simulate"))]
+pub mod simulate;
 pub mod sketch;
 pub mod stroke;
 

@@ -140,14 +140,16 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::simulate::{self, HUMAN, Hand, STYLES};
+    use crate::simulate::guided::{self, STYLES};
+    use crate::simulate::subjects::HUMAN;
+    use crate::simulate::{self, Hand};
 
     fn drawing(rng: &mut ChaCha8Rng, hand: Hand) -> Vec<Stroke> {
         let figure = (HUMAN.figure)();
         let meant = simulate::on_canvas(&(HUMAN.pose)(rng), hand.height_px);
         let style = STYLES[rng.random_range(0..STYLES.len())];
-        let cuts = simulate::cuts(figure, rng, style);
-        simulate::draw(figure, rng, &meant, &cuts, hand)
+        let cuts = guided::cuts(figure, rng, style);
+        guided::draw(figure, rng, &meant, &cuts, hand)
     }
 
     /// A zigzag of `runs` swings of `size_px`, seen from `centre`.

@@ -319,8 +319,10 @@ fn meshes_in_every_dialect_train_what_their_rig_trains() {
 
     // Both are measured alike, too.
     let eval = EvalConfig {
-        sampled_poses: 0,
-        turns_per_library_pose: 2,
+        natural_cases: 2 * HELD_OUT,
+        broad_cases: 0,
+        turns_per_mesh: 2,
+        flat_drawings: 5,
         ..EvalConfig::default()
     };
     let of_rig_report = evaluate(
@@ -328,15 +330,16 @@ fn meshes_in_every_dialect_train_what_their_rig_trains() {
         EvalInput {
             rig: &rig,
             library,
-            held_out,
-            stream: still(0),
+            natural: Box::new(held_out.iter().cloned().cycle()),
+            broad: still(0),
         },
         &eval,
         &Quiet,
     )
     .unwrap();
     let report = evaluate_meshes(&of_meshes, &set, &eval, &Quiet).unwrap();
-    assert_eq!(report.test.library_cases, 2 * HELD_OUT);
+    assert_eq!(report.parts.len(), 1, "there is no broad part");
+    assert_eq!(report.parts[0].cases, 2 * HELD_OUT);
     assert!(report == of_rig_report);
 
     // Six decimals, as the exporter writes, are half a micrometre: the bodies of the same sketches differ by less than

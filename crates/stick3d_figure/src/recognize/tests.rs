@@ -3,7 +3,9 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::simulate::{self, HORSE, HUMAN, Hand, STYLES, Style, Subject};
+use crate::simulate::guided::{self, STYLES, Style};
+use crate::simulate::subjects::{HORSE, HUMAN, Subject};
+use crate::simulate::{self, Hand};
 
 /// A simulated drawing: what was meant, how the path was cut into strokes, the strokes.
 struct Drawing {
@@ -25,8 +27,8 @@ fn drawing_of(subject: Subject, seed: u64, style: Style, hand: Hand, clear: bool
         (subject.pose)(&mut rng)
     };
     let meant = simulate::on_canvas(&pose, hand.height_px);
-    let cuts = simulate::cuts(figure, &mut rng, style);
-    let strokes = simulate::draw(figure, &mut rng, &meant, &cuts, hand);
+    let cuts = guided::cuts(figure, &mut rng, style);
+    let strokes = guided::draw(figure, &mut rng, &meant, &cuts, hand);
     Drawing {
         meant,
         cuts,
@@ -177,8 +179,8 @@ fn elbows_of_straight_arms_are_put_where_the_template_has_them() {
     for style in STYLES {
         for seed in 0..10 {
             let mut rng = simulate::rng(seed);
-            let cuts = simulate::cuts(human, &mut rng, style);
-            let strokes = simulate::draw(human, &mut rng, &meant, &cuts, Hand::default());
+            let cuts = guided::cuts(human, &mut rng, style);
+            let strokes = guided::draw(human, &mut rng, &meant, &cuts, Hand::default());
             let errors = errors(
                 &Drawing {
                     meant: meant.clone(),

@@ -11,55 +11,73 @@ use crate::stroke::Stroke;
 
 /// How the strokes are made.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Habits {
+pub struct Habits {
     /// How often the pen goes on into the next bone.
-    pub(crate) go_on: f64,
+    pub go_on: f64,
     /// How often a bone is cut into two strokes.
-    pub(crate) cut: f64,
+    pub cut: f64,
     /// How often the head is a loop.
-    pub(crate) loop_head: f64,
+    pub loop_head: f64,
     /// How large its radius is, in parts of the bone to it.
-    pub(crate) loop_radius: (f32, f32),
+    pub loop_radius: (f32, f32),
 }
 
-impl Default for Habits {
-    fn default() -> Self {
+impl Habits {
+    /// How a figure is usually drawn.
+    pub fn of(figure: &Figure) -> Self {
         Self {
             go_on: 0.6,
             cut: 0.12,
             loop_head: 0.35,
-            loop_radius: (0.45, 0.8),
+            loop_radius: if figure.views.both_ways {
+                // A long neck carries a small head.
+                (0.15, 0.3)
+            } else {
+                (0.45, 0.8)
+            },
         }
     }
 }
 
 /// How far bones of a flat pose turn from the template, degrees either way.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Freedom {
-    pub(crate) roll: f32,
-    pub(crate) center: f32,
-    pub(crate) first: f32,
-    pub(crate) later: f32,
+struct Freedom {
+    /// The whole body.
+    roll: f32,
+    /// Bones of the body's middle.
+    center: f32,
+    /// Bones of limbs that hang on the middle.
+    first: f32,
+    /// Bones farther out.
+    later: f32,
 }
 
-/// Freely moving, arms raised and crossing.
-pub(crate) const HUMAN_FREEDOM: Freedom = Freedom {
-    roll: 35.0,
-    center: 30.0,
-    first: 110.0,
-    later: 100.0,
-};
-/// Walking, grazing, rearing.
-pub(crate) const HORSE_FREEDOM: Freedom = Freedom {
-    roll: 25.0,
-    center: 35.0,
-    first: 28.0,
-    later: 30.0,
-};
+impl Freedom {
+    fn of(figure: &Figure) -> Self {
+        if figure.views.both_ways {
+            // Walking, grazing, rearing.
+            Self {
+                roll: 25.0,
+                center: 35.0,
+                first: 28.0,
+                later: 30.0,
+            }
+        } else {
+            // Arms raised and crossing.
+            Self {
+                roll: 35.0,
+                center: 30.0,
+                first: 110.0,
+                later: 100.0,
+            }
+        }
+    }
+}
 
-/// The template with its bones turned in the plane and lengthened or shortened by up to 15 %, metres. A bone's angle is
-/// relative to the bone it hangs on.
-pub(crate) fn flat_pose(figure: &Figure, rng: &mut ChaCha8Rng, freedom: Freedom) -> Vec<Vec2> {
+/// The template with its bones turned in the plane (freely; less so where the figure is seen from its side), lengthened or
+/// shortened by up to 15 %, metres. A bone's angle is relative to the bone it hangs on.
+pub fn flat_pose(figure: &Figure, rng: &mut ChaCha8Rng) -> Vec<Vec2> {
+    let freedom = Freedom::of(figure);
     let facing = Vec2::new(
         if figure.views.both_ways && rng.random::<bool>() {
             -1.0
@@ -96,9 +114,9 @@ pub(crate) fn flat_pose(figure: &Figure, rng: &mut ChaCha8Rng, freedom: Freedom)
     placed.into_iter().flatten().map(|(at, _)| at).collect()
 }
 
-/// Whether a flat drawing of the pose says where its joints are: limbs are not folded flat, ends do not lie on the
+/// Whether a flat drawing of a pose, metres, says where its joints are: limbs are not folded flat, ends do not lie on the
 /// bones of other limbs.
-pub(crate) fn is_readable(figure: &Figure, joints: &[Vec2]) -> bool {
+pub fn is_readable(figure: &Figure, joints: &[Vec2]) -> bool {
     let bones_at = |joint: usize| {
         figure
             .bones
@@ -126,8 +144,9 @@ pub(crate) fn is_readable(figure: &Figure, joints: &[Vec2]) -> bool {
         })
 }
 
-/// The strokes of a drawing of `joints_px` in any order, direction and pieces. Bones in `undrawn` are left out.
-pub(crate) fn draw(
+/// The strokes of a drawing of `joints_px` in any order, direction and pieces. The bones of these numbers in `undrawn` are
+/// left out.
+pub fn draw(
     figure: &Figure,
     rng: &mut ChaCha8Rng,
     joints_px: &[Vec2],

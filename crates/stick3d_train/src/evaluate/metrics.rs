@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use stick3d_figure::figure::Figure;
 
+use super::spread::Spread;
 use crate::dataset::rounded;
 
 /// How far meshes are from the truth.
@@ -28,6 +29,8 @@ pub struct Metrics {
     pub pa_mpjpe_mm: f64,
     /// Mean distance between joints on the sketch plane, against the true body (not the disturbed drawing), centimetres.
     pub reprojection_cm: f64,
+    /// Mean angle between a bone and the true one, degrees.
+    pub bone_direction_deg: f64,
     /// Mean error of a bone's length, per cent of the true length.
     pub bone_length_percent: f64,
     /// 95 of 100 bones are closer.
@@ -38,11 +41,12 @@ pub struct Metrics {
 #[derive(Debug, Clone, Default)]
 pub struct Collector {
     cases: usize,
-    vertex_m: Vec<f32>,
-    joint_m: Vec<f32>,
-    aligned_joint_m: Vec<f64>,
-    flat_m: Vec<f32>,
-    bone_share: Vec<f32>,
+    vertex_m: Spread,
+    joint_m: Spread,
+    aligned_joint_m: Spread,
+    flat_m: Spread,
+    bone_turn_rad: Spread,
+    bone_share: Spread,
 }
 
 impl Collector {
@@ -50,72 +54,70 @@ impl Collector {
     pub fn add(&mut self, figure: &Figure, found: (&[Vec3], &[Vec3]), truth: (&[Vec3], &[Vec3])) {
         let ((mesh, joints), (true_mesh, true_joints)) = (found, truth);
         self.cases += 1;
-        self.vertex_m
-            .extend(mesh.iter().zip(true_mesh).map(|(a, b)| a.distance(*b)));
-        self.joint_m
-            .extend(joints.iter().zip(true_joints).map(|(a, b)| a.distance(*b)));
-        self.flat_m.extend(
-            joints
-                .iter()
-                .zip(true_joints)
-                .map(|(a, b)| a.truncate().distance(b.truncate())),
-        );
-        self.aligned_joint_m
-            .push(procrustes_mean_distance(joints, true_joints));
-        self.bone_share.extend(figure.bones.iter().map(|&[a, b]| {
-            let length = true_joints[a].distance(true_joints[b]).max(f32::EPSILON);
-            (joints[a].distance(joints[b]) - length).abs() / length
-        }));
+        for (vertex, truth) in mesh.iter().zip(true_mesh) {
+            self.vertex_m.add(vertex.distance(*truth));
+        }
+        for (joint, truth) in joints.iter().zip(true_joints) {
+            self.joint_m.add(joint.distance(*truth));
+            let flat = joint.truncate().distance(truth.truncate());
+            self.flat_m.add(flat);
+        }
+        let aligned = procrustes_mean_distance(joints, true_joints);
+        self.aligned_joint_m.add(aligned as f32);
+        for &[a, b] in &figure.bones {
+            let (bone, truth) = (joints[b] - joints[a], true_joints[b] - true_joints[a]);
+            let length = truth.length().max(f32::EPSILON);
+            self.bone_share.add((bone.length() - length).abs() / length);
+            self.bone_turn_rad.add(angle_rad(bone, truth));
+        }
+    }
+
+    /// How many cases were added.
+    #[must_use]
+    pub fn cases(&self) -> usize {
+        self.cases
     }
 
     /// Adds the cases of another collector.
     pub fn merge(&mut self, other: &Self) {
         self.cases += other.cases;
-        self.vertex_m.extend(&other.vertex_m);
-        self.joint_m.extend(&other.joint_m);
-        self.aligned_joint_m.extend(&other.aligned_joint_m);
-        self.flat_m.extend(&other.flat_m);
-        self.bone_share.extend(&other.bone_share);
+        self.vertex_m.merge(&other.vertex_m);
+        self.joint_m.merge(&other.joint_m);
+        self.aligned_joint_m.merge(&other.aligned_joint_m);
+        self.flat_m.merge(&other.flat_m);
+        self.bone_turn_rad.merge(&other.bone_turn_rad);
+        self.bone_share.merge(&other.bone_share);
     }
 
     /// The measures; all 0 when there is no case. `extent_m` is the unit of the normalised ones.
     #[must_use]
     pub fn metrics(&self, extent_m: f32) -> Metrics {
         let extent = f64::from(extent_m);
-        let vertex_mean = mean(&self.vertex_m);
-        let squares: Vec<f32> = self.vertex_m.iter().map(|d| d * d).collect();
-        let vertex_square = mean(&squares);
-        let aligned =
-            self.aligned_joint_m.iter().sum::<f64>() / self.aligned_joint_m.len().max(1) as f64;
-        let variance = (vertex_square - vertex_mean * vertex_mean).max(0.0);
+        let vertex = &self.vertex_m;
         Metrics {
             cases: self.cases,
-            vertex_mean_cm: rounded(100.0 * vertex_mean),
-            vertex_std_cm: rounded(100.0 * variance.sqrt()),
-            vertex_p95_cm: rounded(100.0 * percentile_95(&self.vertex_m)),
-            vertex_mean_normalised: rounded(vertex_mean / extent),
-            mse_normalised: rounded(vertex_square / (3.0 * extent * extent)),
-            mpjpe_mm: rounded(1000.0 * mean(&self.joint_m)),
-            pa_mpjpe_mm: rounded(1000.0 * aligned),
-            reprojection_cm: rounded(100.0 * mean(&self.flat_m)),
-            bone_length_percent: rounded(100.0 * mean(&self.bone_share)),
-            bone_length_p95_percent: rounded(100.0 * percentile_95(&self.bone_share)),
+            vertex_mean_cm: rounded(100.0 * vertex.mean()),
+            vertex_std_cm: rounded(100.0 * vertex.deviation()),
+            vertex_p95_cm: rounded(100.0 * vertex.percentile(95.0)),
+            vertex_mean_normalised: rounded(vertex.mean() / extent),
+            mse_normalised: rounded(vertex.mean_square() / (3.0 * extent * extent)),
+            mpjpe_mm: rounded(1000.0 * self.joint_m.mean()),
+            pa_mpjpe_mm: rounded(1000.0 * self.aligned_joint_m.mean()),
+            reprojection_cm: rounded(100.0 * self.flat_m.mean()),
+            bone_direction_deg: rounded(self.bone_turn_rad.mean().to_degrees()),
+            bone_length_percent: rounded(100.0 * self.bone_share.mean()),
+            bone_length_p95_percent: rounded(100.0 * self.bone_share.percentile(95.0)),
         }
     }
 }
 
-fn mean(numbers: &[f32]) -> f64 {
-    numbers.iter().copied().map(f64::from).sum::<f64>() / numbers.len().max(1) as f64
-}
-
-fn percentile_95(numbers: &[f32]) -> f64 {
-    if numbers.is_empty() {
-        return 0.0;
+/// The angle between two directions; a right one where either has no length and so says nothing.
+fn angle_rad(a: Vec3, b: Vec3) -> f32 {
+    let (cross, dot) = (a.cross(b).length(), a.dot(b));
+    if cross == 0.0 && dot == 0.0 {
+        return std::f32::consts::FRAC_PI_2;
     }
-    let mut numbers = numbers.to_vec();
-    let index = (numbers.len() - 1) * 95 / 100;
-    let (_, value, _) = numbers.select_nth_unstable_by(index, f32::total_cmp);
-    f64::from(*value)
+    cross.atan2(dot)
 }
 
 /// Mean distance between two point lists after moving the first by the similarity that brings it closest in the least squares sense.
@@ -190,7 +192,7 @@ mod tests {
         assert!((metrics.vertex_mean_cm - 5.0).abs() < 1e-3 && metrics.vertex_std_cm < 0.01);
         assert!((metrics.mpjpe_mm - 50.0).abs() < 1e-2 && metrics.pa_mpjpe_mm < 1e-2);
         assert!((metrics.reprojection_cm - 3.0).abs() < 1e-3);
-        assert!(metrics.bone_length_percent < 1e-3);
+        assert!(metrics.bone_length_percent < 1e-3 && metrics.bone_direction_deg < 1e-3);
         assert!((metrics.vertex_mean_normalised - 0.05 / 0.9).abs() < 1e-5);
         assert!((metrics.mse_normalised - 0.0025 / (3.0 * 0.81)).abs() < 1e-6);
     }
@@ -204,6 +206,22 @@ mod tests {
         collector.add(figure, (&found, &found), (&truth, &truth));
         let metrics = collector.metrics(0.9);
         assert!((metrics.bone_length_percent - 10.0).abs() < 1e-3);
-        assert!((metrics.bone_length_p95_percent - 10.0).abs() < 1e-3);
+        assert!((metrics.bone_length_p95_percent - 10.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn turned_bones_are_seen() {
+        let figure = Figure::human();
+        let truth: Vec<Vec3> = figure.template.iter().map(|p| p.extend(0.1)).collect();
+        let turn = Quat::from_rotation_z(0.3);
+        let found: Vec<Vec3> = truth.iter().map(|p| turn * *p).collect();
+        let mut collector = Collector::default();
+        collector.add(figure, (&found, &found), (&truth, &truth));
+        let metrics = collector.metrics(0.9);
+        let expected = 0.3_f64.to_degrees();
+        assert!((metrics.bone_direction_deg - expected).abs() < 0.01);
+        assert!(metrics.bone_length_percent < 1e-3);
+        assert_eq!(angle_rad(Vec3::ZERO, Vec3::X), std::f32::consts::FRAC_PI_2);
+        assert!((angle_rad(Vec3::X, -Vec3::X) - std::f32::consts::PI).abs() < 1e-6);
     }
 }

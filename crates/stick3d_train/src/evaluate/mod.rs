@@ -1,17 +1,28 @@
 //! Measuring a model on poses it never saw.
 //!
-//! Test cases are poses from the sampler with a seed of its own, and the library poses (or the registered meshes) that
-//! training left out, each turned at random ([`Rotations::test_of`](crate::dataset::Rotations::test_of)). Each is drawn four times: as it is, with joints
-//! jittered, with bones scaled, with both ([`SketchNoise`]).
+//! The test set has two parts. *Natural*: the library poses (or the registered meshes) that training left out, and
+//! perturbations of such poses ([`natural_poses`]). *Broad*: any pose inside the joints' limits ([`broad_poses`]), from a
+//! seed of its own. Every body is turned at random ([`Rotations::test_of`](crate::dataset::Rotations::test_of)) and drawn
+//! five times: as it is, with joints jittered, with bones scaled, with both
+//! ([`SketchNoise`](crate::dataset::SketchNoise)), and with one limb left out, filled in from the template as it is while a
+//! person draws.
 //!
-//! Meshes are compared centred on the figure's root joint, without aligning rotation or scale. Only PA-MPJPE
-//! aligns, as its name says. Every figure stands beside that of the [nearest neighbour](Baseline): the mesh among the
-//! library's training poses in the paper's 21 turns (facing both ways where the figure does) whose sketch is closest.
+//! Of the model's alternatives the first answer is measured, and the best: the one nearest to the truth. Meshes are
+//! compared centred on the figure's root joint, without aligning rotation or scale. Only PA-MPJPE aligns, as its name says.
+//! Beside them stands the [nearest neighbour](Baseline): the mesh among the library's training poses in the paper's 21
+//! turns (facing both ways where the figure does) whose sketch is closest. The bodies are also drawn with strokes in any
+//! order ([`Recognition`]).
 
 mod baseline;
+mod measure;
 mod metrics;
 mod motion;
+mod poses;
+mod recognition;
 mod report;
+mod sheet;
+mod spread;
+mod ways;
 
 pub use baseline::Baseline;
 pub use metrics::{Collector, Metrics, procrustes_mean_distance};
@@ -19,40 +30,53 @@ pub use motion::{
     BetweenReport, BeyondReport, GaitReport, MotionEvalConfig, MotionEvalInput, MotionReport,
     MotionTestSet, TrueMotion, clip_gaits, clip_motions, evaluate_motion, held_out_motions,
 };
-pub use report::{Drawn, Report, TestSet};
+pub use poses::{broad_poses, natural_poses};
+pub use recognition::Recognition;
+pub use report::{Latency, PartReport, Report, Row, TestSet};
+pub use sheet::answer_sheet;
 
-use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
-use stick3d_figure::figure::Figure;
 use stick3d_figure::sketch::{Sketch, SketchError};
 use stick3d_model::latent::PathError;
 use stick3d_model::metadata::topology_hash;
-use stick3d_model::{InferError, Inference, Model, ModelError};
+use stick3d_model::{InferError, Model, ModelError};
 use thiserror::Error;
 
-use crate::dataset::{PoseStream, Rotations, SketchNoise, centre, drawn, posed, random};
+use crate::dataset::{PoseStream, centre, posed};
 use crate::meshes::{MeshSet, NamedMesh};
 use crate::rig::{Pose, Rig};
-use crate::size::relative_size;
 use crate::training::Progress;
+use measure::{Body, Part, measure};
 
 /// What a measurement is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct EvalConfig {
-    /// What rotations and disturbances depend on; the poses depend on the stream.
+    /// What rotations and disturbances depend on; the poses depend on their streams.
     pub seed: u64,
-    /// How many poses are drawn from the sampler, each turned once.
-    pub sampled_poses: usize,
-    /// How often each held-out library pose is turned.
-    pub turns_per_library_pose: usize,
+    /// How many natural poses are measured, each turned once.
+    pub natural_cases: usize,
+    /// How many broad ones.
+    pub broad_cases: usize,
+    /// How often each registered mesh that was not trained on is turned.
+    pub turns_per_mesh: usize,
+    /// How often each body that can be read is drawn with strokes in any order.
+    pub drawings_per_case: usize,
+    /// How many flat poses are drawn so.
+    pub flat_drawings: usize,
+    /// Whether the time that answers take is measured, too.
+    pub latency: bool,
 }
 
 impl Default for EvalConfig {
     fn default() -> Self {
         Self {
             seed: 20_220_811,
-            sampled_poses: 400,
-            turns_per_library_pose: 10,
+            natural_cases: 400,
+            broad_cases: 400,
+            turns_per_mesh: 10,
+            drawings_per_case: 2,
+            flat_drawings: 400,
+            latency: false,
         }
     }
 }
@@ -63,10 +87,10 @@ pub struct EvalInput<'a> {
     pub rig: &'a Rig,
     /// Library poses that were trained on: the baseline's.
     pub library: &'a [Pose],
-    /// Library poses that were not.
-    pub held_out: &'a [Pose],
-    /// Sampled poses, from a seed that training does not use.
-    pub stream: PoseStream<'a>,
+    /// Natural poses that were not; there may be none.
+    pub natural: PoseStream<'a>,
+    /// Broad poses, from a seed that training does not use.
+    pub broad: PoseStream<'a>,
 }
 
 /// Why a model could not be measured.
@@ -79,6 +103,9 @@ pub enum EvalError {
     /// A test body has no sketch.
     #[error("a test body has no sketch: {0}")]
     Sketch(#[from] SketchError),
+    /// There is nothing to draw.
+    #[error("there is no sketch to draw a sheet of")]
+    NoSketches,
     /// The model gave no mesh.
     #[error(transparent)]
     Infer(#[from] InferError),
@@ -103,32 +130,6 @@ pub enum EvalError {
     },
 }
 
-/// How far joints are jittered on a figure of usual size, metres, and how much bones are scaled.
-const JITTER_M: f32 = 0.025;
-const BONE_SCALE: f32 = 0.15;
-
-/// The four ways in which every test case of a figure is drawn, by name; a small one is jittered less
-/// ([`relative_size`]).
-#[must_use]
-pub fn ways_to_draw(figure: &Figure) -> [(String, SketchNoise); 4] {
-    let jitter_m = JITTER_M * relative_size(figure.template_extent_m());
-    let jittered = format!("joints jittered by {:.1} cm", 100.0 * jitter_m);
-    let scaled = format!("bones scaled by {:.0} %", 100.0 * BONE_SCALE);
-    let way = |name: &str, jitter_m: f32, bone_scale: f32| {
-        let noise = SketchNoise {
-            jitter_m,
-            bone_scale,
-        };
-        (name.to_owned(), noise)
-    };
-    [
-        way("clean", 0.0, 0.0),
-        way(&jittered, jitter_m, 0.0),
-        way(&scaled, 0.0, BONE_SCALE),
-        way("both", jitter_m, BONE_SCALE),
-    ]
-}
-
 /// Measures a model and the baseline.
 ///
 /// # Errors
@@ -139,31 +140,49 @@ pub fn evaluate(
     config: &EvalConfig,
     progress: &dyn Progress,
 ) -> Result<Report, EvalError> {
-    let (rig, regressor, root) = (input.rig, model.regressor(), model.figure().root);
-    let vertex_count = rig.mesh.positions.len();
-    model.require_topology(&topology_hash(vertex_count, &rig.mesh.triangles))?;
-    let body = |pose: &Pose| -> Body {
-        let mut mesh = vec![];
-        let joints = posed(rig, regressor, root, pose, &mut mesh);
-        (mesh, joints)
-    };
-    let sampled = input.stream.take(config.sampled_poses);
-    let cases = Cases {
-        sampled: config.sampled_poses,
-        library: input.held_out.len(),
-        baseline: &mut input.library.iter().map(body),
-        bodies: &mut sampled.map(|pose| (Source::Sampler, body(&pose))).chain(
-            input
-                .held_out
-                .iter()
-                .map(|pose| (Source::Library, body(pose))),
-        ),
-    };
-    measure(model, cases, config, progress)
+    let vertex_count = input.rig.mesh.positions.len();
+    model.require_topology(&topology_hash(vertex_count, &input.rig.mesh.triangles))?;
+    let body = |pose: &Pose| body_of(model, input.rig, pose);
+    let baseline = Baseline::new(model.figure(), input.library.iter().map(body))?;
+    let parts = parts(
+        input.natural.take(config.natural_cases),
+        input.broad.take(config.broad_cases),
+    );
+    measure(model, &baseline, &parts, &body, config, progress)
+}
+
+/// The first `count` sketches that [`evaluate`] measures by, named after their part and number: half of them natural, half
+/// broad; every third with joints jittered and bones scaled.
+///
+/// # Errors
+/// [`EvalError`].
+pub fn test_sketches(
+    model: &Model,
+    input: EvalInput<'_>,
+    config: &EvalConfig,
+    count: usize,
+) -> Result<Vec<(String, Sketch)>, EvalError> {
+    let parts = parts(input.natural.take(count), input.broad.take(count));
+    let body = |pose: &Pose| body_of(model, input.rig, pose);
+    measure::sketches(model, &parts, &body, config, count)
+}
+
+fn parts(
+    natural: impl Iterator<Item = Pose>,
+    broad: impl Iterator<Item = Pose>,
+) -> [Part<Pose>; 2] {
+    let [natural, broad] = [natural.collect(), broad.collect()];
+    [(NATURAL, natural), (BROAD, broad)].map(|(name, cases)| Part { name, cases })
+}
+
+fn body_of(model: &Model, rig: &Rig, pose: &Pose) -> Body {
+    let mut mesh = vec![];
+    let joints = posed(rig, model.regressor(), model.figure().root, pose, &mut mesh);
+    (mesh, joints)
 }
 
 /// Measures a model of registered meshes: on those of `set` that it did not learn from, beside the baseline among the
-/// others.
+/// others. There is no broad part.
 ///
 /// # Errors
 /// [`EvalError`]; [`EvalError::NoHeldOut`] when the set has none of the meshes kept from the model.
@@ -185,136 +204,15 @@ pub fn evaluate_meshes(
         let joints = centre(model.regressor(), model.figure().root, &mut mesh);
         (mesh, joints)
     };
-    let cases = Cases {
-        sampled: 0,
-        library: held_out.len(),
-        baseline: &mut trained.iter().map(body),
-        bodies: &mut held_out.iter().map(|mesh| (Source::Library, body(mesh))),
+    let baseline = Baseline::new(model.figure(), trained.iter().map(body))?;
+    let cases = held_out.len() * config.turns_per_mesh;
+    let natural = Part {
+        name: NATURAL,
+        cases: held_out.iter().copied().cycle().take(cases).collect(),
     };
-    measure(model, cases, config, progress)
+    measure(model, &baseline, &[natural], &body, config, progress)
 }
 
-/// A mesh centred on the root joint, and its joints.
-type Body = (Vec<Vec3>, Vec<Vec3>);
-
-/// What to measure on.
-struct Cases<'c> {
-    sampled: usize,
-    library: usize,
-    baseline: &'c mut dyn Iterator<Item = Body>,
-    bodies: &'c mut dyn Iterator<Item = (Source, Body)>,
-}
-
-fn measure(
-    model: &Model,
-    cases: Cases<'_>,
-    config: &EvalConfig,
-    progress: &dyn Progress,
-) -> Result<Report, EvalError> {
-    let ways = ways_to_draw(model.figure());
-    let collectors = ways.iter().map(|_| Collectors::default()).collect();
-    let mut evaluation = Evaluation {
-        figure: model.figure(),
-        baseline: Baseline::new(model.figure(), cases.baseline)?,
-        inference: Inference::new(model)?,
-        config,
-        model,
-        rng_step: 0,
-        ways,
-        collectors,
-    };
-    let library_cases = cases.library * config.turns_per_library_pose;
-    progress.begin("measuring", cases.sampled + library_cases);
-    for (source, body) in cases.bodies {
-        let turns = match source {
-            Source::Sampler => 1,
-            Source::Library => config.turns_per_library_pose,
-        };
-        for _ in 0..turns {
-            evaluation.case(&body, source)?;
-            progress.advance(1);
-        }
-    }
-    Ok(evaluation.report(cases.sampled, library_cases))
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Source {
-    Sampler,
-    Library,
-}
-
-/// What one way of drawing has yielded so far: for the model and the baseline, by source of the pose.
-#[derive(Debug, Default)]
-struct Collectors {
-    model: [Collector; 2],
-    baseline: [Collector; 2],
-}
-
-struct Evaluation<'a> {
-    figure: &'a Figure,
-    model: &'a Model,
-    inference: Inference,
-    baseline: Baseline,
-    config: &'a EvalConfig,
-    rng_step: u64,
-    ways: [(String, SketchNoise); 4],
-    collectors: Vec<Collectors>,
-}
-
-impl Evaluation<'_> {
-    /// Turns a body, draws it four ways, and compares what comes of it.
-    fn case(&mut self, (mesh, joints): &Body, source: Source) -> Result<(), EvalError> {
-        let figure = self.figure;
-        let mut rng = random(self.config.seed, "evaluation", self.rng_step);
-        self.rng_step += 1;
-        let turn = Rotations::test_of(&figure.views).sample(&mut rng);
-        let truth: Vec<Vec3> = mesh.iter().map(|point| turn * *point).collect();
-        let joints: Vec<Vec3> = joints.iter().map(|joint| turn * *joint).collect();
-        let mut latent = vec![0.0; self.inference.latent_len()];
-        let mut positions = vec![[0.0; 3]; truth.len()];
-        for (index, (_, noise)) in self.ways.iter().enumerate() {
-            let mut points: Vec<Vec2> = drawn(Quat::IDENTITY, &joints);
-            noise.apply(figure, &mut points, &mut rng);
-            let sketch = Sketch::new(figure, points)?;
-            self.inference.encode(&sketch, &mut latent)?;
-            self.inference.decode_positions(&latent, &mut positions)?;
-            let found: Vec<Vec3> = positions.iter().copied().map(Vec3::from).collect();
-            let collectors = &mut self.collectors[index];
-            let regressor = self.model.regressor();
-            let slot = source as usize;
-            collectors.model[slot].add(
-                figure,
-                (&found, &regressor.joints(&found)),
-                (&truth, &joints),
-            );
-            let nearest = self.baseline.nearest(figure, &sketch)?;
-            collectors.baseline[slot].add(
-                figure,
-                (&nearest, &regressor.joints(&nearest)),
-                (&truth, &joints),
-            );
-        }
-        Ok(())
-    }
-
-    fn report(self, sampled_cases: usize, library_cases: usize) -> Report {
-        let extent_m = self.model.metadata().normalisation.extent_m;
-        let (mut model, mut baseline) = (vec![], vec![]);
-        for ((name, noise), collectors) in self.ways.iter().zip(self.collectors) {
-            model.push(Drawn::new(name, *noise, collectors.model, extent_m));
-            baseline.push(Drawn::new(name, *noise, collectors.baseline, extent_m));
-        }
-        let test = TestSet {
-            seed: self.config.seed,
-            sampled_cases,
-            library_cases,
-            baseline_meshes: self.baseline.len(),
-        };
-        Report {
-            test,
-            model,
-            baseline,
-        }
-    }
-}
+/// The names of the parts of the test set.
+const NATURAL: &str = "natural";
+const BROAD: &str = "broad";

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Collector, Metrics};
+use super::{Metrics, Recognition};
 use crate::dataset::SketchNoise;
 
 /// A model beside the baseline.
@@ -10,55 +10,71 @@ use crate::dataset::SketchNoise;
 pub struct Report {
     /// What both were measured on.
     pub test: TestSet,
-    /// The model, one entry per way of drawing.
-    pub model: Vec<Drawn>,
-    /// The nearest neighbour, likewise.
-    pub baseline: Vec<Drawn>,
+    /// What was found on each part of it.
+    pub parts: Vec<PartReport>,
+    /// Recognition of flat poses: the figure's template with its bones turned in the plane and scaled.
+    pub flat_any_order: Recognition,
+    /// How long it takes; none where it was not asked for. It differs from run to run.
+    pub latency: Option<Latency>,
 }
 
 /// What was measured on.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TestSet {
+    /// The figure.
+    pub figure: String,
     /// The seed of rotations and disturbances.
     pub seed: u64,
-    /// Cases whose pose is from the sampler.
-    pub sampled_cases: usize,
-    /// Cases whose pose is a library pose that was not trained on.
-    pub library_cases: usize,
     /// Meshes of the baseline, turns counted.
     pub baseline_meshes: usize,
 }
 
-/// The measures for one way of drawing.
+/// What was found on one part of the test set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Drawn {
-    /// Its name.
+pub struct PartReport {
+    /// `natural`: library poses (or registered meshes) that were not trained on, and perturbations of such poses. `broad`: any
+    /// pose inside the joints' limits.
     pub name: String,
-    /// What was done to the sketches.
-    pub noise: SketchNoise,
-    /// All cases.
-    pub all: Metrics,
-    /// Those from the sampler.
-    pub sampled: Metrics,
-    /// Those from the library.
-    pub library: Metrics,
+    /// How many bodies there are, each turned at random and drawn in every way.
+    pub cases: usize,
+    /// Per answer and way of drawing, in the order of the answers.
+    pub rows: Vec<Row>,
+    /// Recognition of these bodies, drawn with strokes in any order.
+    pub any_order: Recognition,
 }
 
-impl Drawn {
-    pub(super) fn new(
-        name: &str,
-        noise: SketchNoise,
-        [sampled, library]: [Collector; 2],
-        extent_m: f32,
-    ) -> Self {
-        let mut all = sampled.clone();
-        all.merge(&library);
-        Self {
-            name: name.to_owned(),
-            noise,
-            all: all.metrics(extent_m),
-            sampled: sampled.metrics(extent_m),
-            library: library.metrics(extent_m),
-        }
+impl PartReport {
+    /// The row of an answer and a way of drawing.
+    #[must_use]
+    pub fn row(&self, answer: &str, drawn: &str) -> Option<&Row> {
+        self.rows
+            .iter()
+            .find(|row| row.answer == answer && row.drawn == drawn)
     }
+}
+
+/// The measures of one kind of answer to one way of drawing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Whose answer: `first answer`, `best alternative` (the one nearest to the truth), `nearest neighbour`.
+    pub answer: String,
+    /// How it was drawn: `clean`, `jittered`, `scaled`, `both`, `incomplete` (a limb left out).
+    pub drawn: String,
+    /// What was done to the sketches.
+    pub noise: SketchNoise,
+    /// How many answers there were to choose from: mean.
+    pub choice: f64,
+    /// The measures.
+    pub metrics: Metrics,
+}
+
+/// How long it takes to find all answers to a sketch, milliseconds, on one core.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Latency {
+    /// How many clean sketches were measured.
+    pub sketches: usize,
+    /// Half of them take less.
+    pub p50_ms: f64,
+    /// 99 of 100 take less.
+    pub p99_ms: f64,
 }

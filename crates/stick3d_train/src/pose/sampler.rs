@@ -70,12 +70,7 @@ impl<'a> PoseSampler<'a> {
             if self.random.random_bool(0.5) {
                 values = self.controls.mirror(&values);
             }
-            let transforms = self.controls.transforms(&self.controls.rotations(&values));
-            let body = self.controls.body();
-            if body
-                .overlaps(&transforms, body.allowed_overlap_m())
-                .is_empty()
-            {
+            if self.is_free(&values) {
                 return values;
             }
         }
@@ -85,6 +80,31 @@ impl<'a> PoseSampler<'a> {
         } else {
             self.controls.ease()
         }
+    }
+
+    /// A pose, every control moved at random: by `strength` times its spread, standard deviation. It keeps inside the
+    /// limits and does not run into itself; where that does not succeed, it is the pose as it was.
+    pub fn perturbed(&mut self, values: &PoseValues, strength: f32) -> PoseValues {
+        for attempt in 0..ATTEMPTS {
+            let boldness = 1.0 - attempt as f32 / ATTEMPTS as f32;
+            let mut moved = values.clone();
+            for (degrees, control) in moved.degrees.iter_mut().zip(self.controls.list()) {
+                *degrees += gaussian(&mut self.random) * control.spread_deg * strength * boldness;
+            }
+            self.controls.clamp(&mut moved);
+            if self.is_free(&moved) {
+                return moved;
+            }
+        }
+        values.clone()
+    }
+
+    /// Whether a body does not run into itself.
+    fn is_free(&self, values: &PoseValues) -> bool {
+        let transforms = self.controls.transforms(&self.controls.rotations(values));
+        let body = self.controls.body();
+        let overlaps = body.overlaps(&transforms, body.allowed_overlap_m());
+        overlaps.is_empty()
     }
 
     /// A blend of two or three poses of the library, with own mixtures for the limbs.
@@ -115,7 +135,8 @@ impl<'a> PoseSampler<'a> {
                 .map(|(w, p)| w * self.poses[*p].degrees[index])
                 .sum();
             let control = &self.controls.list()[index];
-            values.degrees[index] = blended + self.gaussian() * control.spread_deg * 0.3 * boldness;
+            values.degrees[index] =
+                blended + gaussian(&mut self.random) * control.spread_deg * 0.3 * boldness;
         }
         values.lift_m = body
             .iter()
@@ -151,7 +172,7 @@ impl<'a> PoseSampler<'a> {
             } else {
                 1.0
             };
-            let bell = self.gaussian() * reach * tail;
+            let bell = gaussian(&mut self.random) * reach * tail;
             values.degrees[index] = reflect(middle + bell, min, max);
         }
         if self.random.random_bool(0.25) {
@@ -169,12 +190,12 @@ impl<'a> PoseSampler<'a> {
             }
         }
     }
+}
 
-    /// Normally distributed, mean 0, standard deviation 1 (Box and Muller, 1958).
-    fn gaussian(&mut self) -> f32 {
-        let radius = (-2.0 * (1.0 - self.random.random::<f32>()).ln()).sqrt();
-        radius * (std::f32::consts::TAU * self.random.random::<f32>()).cos()
-    }
+/// Normally distributed, mean 0, standard deviation 1 (Box and Muller, 1958).
+fn gaussian(random: &mut ChaCha8Rng) -> f32 {
+    let radius = (-2.0 * (1.0 - random.random::<f32>()).ln()).sqrt();
+    radius * (std::f32::consts::TAU * random.random::<f32>()).cos()
 }
 
 /// Folds a value back into a range, so that it does not pile up at the ends.

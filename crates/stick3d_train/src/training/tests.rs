@@ -148,37 +148,47 @@ fn evaluation_measures_model_and_baseline_alike() {
     let model = run(&quick, None, false, &Quiet).unwrap().model;
     let library: Vec<Pose> = stream(7).take(4).collect();
     let config = EvalConfig {
-        sampled_poses: 6,
-        turns_per_library_pose: 2,
+        natural_cases: 6,
+        broad_cases: 24,
+        flat_drawings: 10,
         ..EvalConfig::default()
     };
-    let measure = || {
+    let measure = |seed| {
         let input = EvalInput {
             rig: &RIG,
             library: &library,
-            held_out: &library[..2],
-            stream: stream(1000),
+            natural: Box::new(library[..2].iter().cloned().cycle()),
+            broad: stream(1000),
         };
+        let config = EvalConfig { seed, ..config };
         evaluate(&model, input, &config, &Quiet).unwrap()
     };
-    let report = measure();
-    assert!(report == measure(), "the same seed measures the same");
-    assert_eq!(
-        (report.test.sampled_cases, report.test.library_cases),
-        (6, 4)
-    );
+    let report = measure(1);
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let again = alone.unwrap().install(|| measure(1));
+    assert!(report == again, "the same seed measures the same");
+    assert!(report != measure(2));
     assert_eq!(report.test.baseline_meshes, 84);
-    assert_eq!(report.model.len(), 4);
-    for drawn in report.model.iter().chain(&report.baseline) {
-        assert_eq!(drawn.all.cases, 10);
-        let means = [drawn.sampled.vertex_mean_cm, drawn.library.vertex_mean_cm];
-        let between = (6.0 * means[0] + 4.0 * means[1]) / 10.0;
-        assert!((drawn.all.vertex_mean_cm - between).abs() < 1e-4);
-        assert!(drawn.all.vertex_p95_cm > drawn.all.vertex_mean_cm);
-        assert!(drawn.all.pa_mpjpe_mm < drawn.all.mpjpe_mm);
+    assert_eq!(report.flat_any_order.drawings, 10);
+    assert_eq!(report.parts.len(), 2);
+    for (part, cases) in report.parts.iter().zip([6, 24]) {
+        assert_eq!((part.cases, part.any_order.poses), (cases, cases));
+        assert_eq!(part.rows.len(), 5 + 5 + 2, "{:?}", part.rows);
+        for row in &part.rows {
+            let metrics = &row.metrics;
+            assert_eq!(metrics.cases, cases);
+            assert!(metrics.vertex_p95_cm > metrics.vertex_mean_cm);
+            assert!(metrics.pa_mpjpe_mm < metrics.mpjpe_mm);
+        }
+        for way in ["clean", "jittered", "scaled", "both", "incomplete"] {
+            let [first, best] = ["first answer", "best alternative"]
+                .map(|answer| part.row(answer, way).unwrap().metrics.vertex_mean_cm);
+            assert!(best <= first);
+        }
     }
-    // The baseline has the held-out poses among its own here, in turns up to 15° and more away.
-    assert!(report.baseline[0].library.mpjpe_mm < 500.0);
+    // The baseline has the natural poses among its own here, in turns up to 15° and more away.
+    let nearest = report.parts[0].row("nearest neighbour", "clean").unwrap();
+    assert!(nearest.metrics.mpjpe_mm < 500.0);
     let json = serde_json::to_string(&report).unwrap();
     assert!(serde_json::from_str::<crate::evaluate::Report>(&json).unwrap() == report);
 }

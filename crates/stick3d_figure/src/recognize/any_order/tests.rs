@@ -8,58 +8,18 @@ use rand_chacha::ChaCha8Rng;
 use super::*;
 use crate::edit::swap_pair;
 use crate::interchange::{Drawing, figure_name};
-use crate::simulate::any_order::{
-    HORSE_FREEDOM, HUMAN_FREEDOM, Habits, draw, flat_pose, is_readable,
-};
-use crate::simulate::{self, HORSE, HUMAN, Hand};
+use crate::simulate::any_order::{Habits, draw, flat_pose, is_readable};
+use crate::simulate::subjects::{HORSE, HUMAN};
+use crate::simulate::{self, Hand, farthest_px, is_recognised};
 
+/// As [`Hand::any_order`] draws.
 const HEIGHT_PX: f32 = 500.0;
 /// A joint is right within this part of the height: 30 px.
 const RIGHT: f32 = 0.06;
 
-/// 3 px of jitter on a figure of 500 px; strokes end up to 6 px in x and y beside the joint that they mean.
-fn hand() -> Hand {
-    Hand {
-        height_px: HEIGHT_PX,
-        jitter_px: 3.0,
-        ..Hand::default()
-    }
-}
-
-fn habits(figure: &Figure) -> Habits {
-    let habits = Habits::default();
-    if figure.views.both_ways {
-        // A long neck carries a small head.
-        Habits {
-            loop_radius: (0.15, 0.3),
-            ..habits
-        }
-    } else {
-        habits
-    }
-}
-
 /// The largest distance of a joint from where it is meant, in parts of the height.
 fn farthest(found: &[Option<Vec2>], meant: &[Vec2]) -> f32 {
-    let away = |(found, meant): (&Option<Vec2>, &Vec2)| {
-        found.map_or(f32::INFINITY, |found| found.distance(*meant))
-    };
-    found.iter().zip(meant).map(away).fold(0.0, f32::max) / HEIGHT_PX
-}
-
-/// The joints as meant, left and right by the rule. Pairs that the rule calls ambiguous are put as they were found.
-fn by_the_rule(figure: &Figure, meant: &[Vec2], found: &[Option<Vec2>]) -> Vec<Vec2> {
-    let mut joints: Vec<Option<Vec2>> = meant.iter().copied().map(Some).collect();
-    let ambiguous = sides::put_on_sides(figure, &mut joints);
-    let mut joints: Vec<Vec2> = joints.into_iter().flatten().collect();
-    for pair in ambiguous {
-        let mut swapped = joints.clone();
-        sides::swap(&pair, &mut swapped);
-        if farthest(found, &swapped) < farthest(found, &joints) {
-            joints = swapped;
-        }
-    }
-    joints
+    farthest_px(found, meant) / HEIGHT_PX
 }
 
 /// How many of the drawings of these poses are recognised with every joint right, of a hundred.
@@ -69,39 +29,21 @@ fn percent_right(
     mut pose: impl FnMut(u64, &mut ChaCha8Rng) -> Vec<Vec2>,
 ) -> f32 {
     let mut right = 0;
-    let mut spent = std::time::Duration::ZERO;
+    let started = std::time::Instant::now();
     for seed in 0..count {
         let mut rng = simulate::rng(seed);
-        let meant = simulate::on_canvas(&pose(seed, &mut rng), HEIGHT_PX);
-        let strokes = draw(figure, &mut rng, &meant, &[], hand(), habits(figure));
-        let started = std::time::Instant::now();
-        let found = recognize_any(figure, &strokes).unwrap();
-        spent += started.elapsed();
-        let meant = by_the_rule(figure, &meant, &found.joints);
-        right += u32::from(farthest(&found.joints, &meant) < RIGHT);
-        assert_eq!(found.missing.is_empty(), found.is_complete());
+        let pose = pose(seed, &mut rng);
+        right += u32::from(is_recognised(figure, &mut rng, &pose, Hand::any_order()));
     }
     let percent = 100.0 * right as f32 / count as f32;
-    println!(
-        "{}: {percent} %, {:?} each",
-        figure.name,
-        spent / count as u32
-    );
+    let spent = started.elapsed() / count as u32;
+    println!("{}: {percent} %, {spent:?} each", figure.name);
     percent
 }
 
 fn readable_pose(figure: &Figure, rng: &mut ChaCha8Rng) -> Vec<Vec2> {
-    let freedom = if figure.views.both_ways {
-        HORSE_FREEDOM
-    } else {
-        HUMAN_FREEDOM
-    };
-    loop {
-        let pose = flat_pose(figure, rng, freedom);
-        if is_readable(figure, &pose) {
-            return pose;
-        }
-    }
+    let mut poses = std::iter::repeat_with(|| flat_pose(figure, rng));
+    poses.find(|pose| is_readable(figure, pose)).unwrap()
 }
 
 #[test]
@@ -180,7 +122,14 @@ fn a_limb_that_is_not_drawn_is_missing() {
                 .filter(|(_, bone)| is_gone(bone))
                 .map(|(i, _)| i)
                 .collect();
-            let strokes = draw(figure, &mut rng, &meant, &undrawn, hand(), habits(figure));
+            let strokes = draw(
+                figure,
+                &mut rng,
+                &meant,
+                &undrawn,
+                Hand::any_order(),
+                Habits::of(figure),
+            );
             let mut found = recognize_any(figure, &strokes).unwrap();
             if found.missing.len() != 1 {
                 continue;
@@ -345,7 +294,14 @@ fn order_direction_place_and_size_do_not_matter() {
     for seed in 0..40 {
         let mut rng = simulate::rng(seed);
         let meant = simulate::on_canvas(&readable_pose(human, &mut rng), HEIGHT_PX);
-        let mut strokes = draw(human, &mut rng, &meant, &[], hand(), habits(human));
+        let mut strokes = draw(
+            human,
+            &mut rng,
+            &meant,
+            &[],
+            Hand::any_order(),
+            Habits::of(human),
+        );
         let found = recognize_any(human, &strokes).unwrap();
         strokes.shuffle(&mut rng);
         let (scale, offset) = (1.7, Vec2::new(-300.0, 90.0));
@@ -389,7 +345,14 @@ fn other_figures_are_drawn_in_any_order_too() {
     let mut right = 0;
     for seed in 0..20 {
         let mut rng = simulate::rng(seed);
-        let strokes = draw(&fish, &mut rng, &meant, &[], hand(), habits(&fish));
+        let strokes = draw(
+            &fish,
+            &mut rng,
+            &meant,
+            &[],
+            Hand::any_order(),
+            Habits::of(&fish),
+        );
         let found = recognize_any(&fish, &strokes).unwrap();
         right += u32::from(farthest(&found.joints, &meant) < RIGHT);
     }

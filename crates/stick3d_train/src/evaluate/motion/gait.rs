@@ -23,6 +23,9 @@ pub(super) struct Skating {
     /// Per height of [`NEAR_M`], the share of the steps of feet below it that are too fast: grounded, and with the root joint
     /// held still.
     pub(super) ratio: [[f32; 2]; 2],
+    /// The same of the true motion, in every step of which the lowest foot stays where it is: what no motion can be better
+    /// than that looks like it.
+    pub(super) truth: [f32; 2],
     /// How fast it walks over the ground, metres a second.
     pub(super) speed_m_per_s: f32,
 }
@@ -66,8 +69,44 @@ pub(super) fn measure(
     let way = (way(start_s + duration_s) - way(start_s)) * Vec3::new(1.0, 0.0, 1.0);
     Ok(Skating {
         ratio: counts.map(|counts| counts.map(Count::ratio)),
+        truth: of_truth(drawn, &feet(inference.figure()), &rest_m, frames_per_s),
         speed_m_per_s: way.length() / duration_s,
     })
+}
+
+/// The skating of a true motion over the ground that its lowest vertex touches in every frame.
+fn of_truth(
+    drawn: &DrawnMotion,
+    feet: &[usize],
+    rest_m: &[f32],
+    frames_per_s: f32,
+) -> [f32; NEAR_M.len()] {
+    let standing: Vec<Vec<Vec3>> = drawn
+        .frames
+        .iter()
+        .map(|frame| {
+            let ground_m = frame.mesh.iter().map(|v| v.y).fold(f32::INFINITY, f32::min);
+            let raised = |foot: &usize| frame.joints[*foot] - Vec3::Y * ground_m;
+            feet.iter().map(raised).collect()
+        })
+        .collect();
+    let mut counts = [Count::default(); NEAR_M.len()];
+    for pair in standing.windows(2) {
+        let (before, now) = (&pair[0], &pair[1]);
+        let height = |foot: &usize| before[*foot].y.max(now[*foot].y) - rest_m[*foot];
+        let lowest = (0..feet.len()).min_by(|a, b| height(a).total_cmp(&height(b)));
+        let Some(pinned) = lowest else {
+            continue;
+        };
+        let way = before[pinned] - now[pinned];
+        for (foot, rest_m) in rest_m.iter().enumerate() {
+            for (count, near_m) in counts.iter_mut().zip(NEAR_M) {
+                let to = now[foot] + way * Vec3::new(1.0, 0.0, 1.0);
+                count.add(before[foot], to, rest_m + near_m, frames_per_s);
+            }
+        }
+    }
+    counts.map(Count::ratio)
 }
 
 /// Steps of feet that are low, and those of them that skate.

@@ -91,6 +91,10 @@ pub struct GaitReport {
     pub grounded_below_5_cm_percent: f64,
     /// The same with the root joint held still.
     pub still_below_5_cm_percent: f64,
+    /// [`GaitReport::grounded_percent`] of the true motions, the lowest foot held where it is in every step.
+    pub true_percent: f64,
+    /// The same with 5 cm instead of 2.5.
+    pub true_below_5_cm_percent: f64,
     /// How fast the loops go over the ground: mean, metres a second.
     pub speed_m_per_s: f64,
 }
@@ -123,6 +127,8 @@ pub(super) fn gaits(all: &[Skating]) -> GaitReport {
         still_percent: rounded(100.0 * mean(|s| s.ratio[0][1])),
         grounded_below_5_cm_percent: rounded(100.0 * mean(|s| s.ratio[1][0])),
         still_below_5_cm_percent: rounded(100.0 * mean(|s| s.ratio[1][1])),
+        true_percent: rounded(100.0 * mean(|s| s.truth[0])),
+        true_below_5_cm_percent: rounded(100.0 * mean(|s| s.truth[1])),
         speed_m_per_s: rounded(mean(|s| s.speed_m_per_s)),
     }
 }

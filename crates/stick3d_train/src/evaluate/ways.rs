@@ -1,0 +1,114 @@
+//! The ways in which every test case is drawn.
+
+use glam::Vec2;
+use rand::Rng;
+use stick3d_figure::complete_from_template;
+use stick3d_figure::figure::Figure;
+use stick3d_figure::sketch::{Sketch, SketchError};
+
+use crate::dataset::SketchNoise;
+use crate::size::relative_size;
+
+/// How far joints are jittered on a figure of usual size, metres, and how much bones are scaled.
+const JITTER_M: f32 = 0.025;
+const BONE_SCALE: f32 = 0.15;
+
+/// A way to draw a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Way {
+    /// Its name.
+    pub(super) name: &'static str,
+    /// What is done to the sketch.
+    pub(super) noise: SketchNoise,
+    /// Whether a limb is left out.
+    pub(super) incomplete: bool,
+    /// Whether the nearest neighbour stands beside it.
+    pub(super) beside_baseline: bool,
+}
+
+/// Ways to draw one figure,
+pub(super) const WAYS: usize = 5;
+/// and which of them disturbs both joints and bones.
+pub(super) const CROOKED: usize = 3;
+
+impl Way {
+    /// All ways to draw a figure; the first is to draw it as it is. A small figure is jittered less ([`relative_size`]).
+    pub(super) fn all(figure: &Figure) -> [Self; WAYS] {
+        let jitter_m = JITTER_M * relative_size(figure.template_extent_m());
+        let way = |name, jitter_m, bone_scale| Self {
+            name,
+            noise: SketchNoise {
+                jitter_m,
+                bone_scale,
+            },
+            incomplete: false,
+            beside_baseline: false,
+        };
+        let clean = way("clean", 0.0, 0.0);
+        [
+            Self {
+                beside_baseline: true,
+                ..clean
+            },
+            way("jittered", jitter_m, 0.0),
+            way("scaled", 0.0, BONE_SCALE),
+            Self {
+                beside_baseline: true,
+                ..way("both", jitter_m, BONE_SCALE)
+            },
+            Self {
+                name: "incomplete",
+                incomplete: true,
+                ..clean
+            },
+        ]
+    }
+
+    /// A sketch drawn this way of joints on the sketch plane, metres. `case` says which limb is left out: each in turn. What is
+    /// not drawn is filled in as it is while a person draws.
+    pub(super) fn draw(
+        &self,
+        figure: &Figure,
+        mut joints: Vec<Vec2>,
+        case: usize,
+        rng: &mut impl Rng,
+    ) -> Result<Sketch, SketchError> {
+        self.noise.apply(figure, &mut joints, rng);
+        let limbs = figure.limbs();
+        let left_out = limbs.get(case % limbs.len().max(1));
+        if let (true, Some(limb)) = (self.incomplete, left_out) {
+            let mut placed: Vec<Option<Vec2>> = joints.iter().copied().map(Some).collect();
+            limb.joints.iter().for_each(|joint| placed[*joint] = None);
+            // A figure that is a single limb has nothing left to fill it in from, and is drawn whole.
+            if let Some(sketch) = complete_from_template(figure, &placed) {
+                return Ok(sketch);
+            }
+        }
+        Sketch::new(figure, joints)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::random;
+
+    #[test]
+    fn every_limb_is_left_out_in_turn_and_the_rest_stays() {
+        for figure in Figure::shipped() {
+            let way = Way::all(figure)[WAYS - 1];
+            let limbs = figure.limbs();
+            let bent: Vec<Vec2> = (0..figure.joint_count())
+                .map(|i| figure.template[i] + 0.1 * Vec2::from_angle(i as f32))
+                .collect();
+            for (case, limb) in limbs.iter().enumerate() {
+                let rng = &mut random(1, "test", 0);
+                let sketch = way.draw(figure, bent.clone(), case, rng).unwrap();
+                for (joint, point) in sketch.points().iter().enumerate() {
+                    let drawn = !limb.joints.contains(&joint);
+                    assert_eq!(*point == bent[joint], drawn, "{} {joint}", figure.name);
+                }
+            }
+        }
+    }
+}
