@@ -116,7 +116,7 @@ impl<'a> PoseSampler<'a> {
         let body = self.weights(count);
         let limbs: Vec<Vec<f32>> = (0..self.controls.limb_count())
             .map(|_| {
-                if self.random.random_bool(0.5) {
+                if self.random.random_bool(0.35) {
                     body.clone()
                 } else {
                     self.weights(count)
@@ -136,7 +136,7 @@ impl<'a> PoseSampler<'a> {
                 .sum();
             let control = &self.controls.list()[index];
             values.degrees[index] =
-                blended + gaussian(&mut self.random) * control.spread_deg * 0.3 * boldness;
+                blended + gaussian(&mut self.random) * control.spread_deg * 0.45 * boldness;
         }
         values.lift_m = body
             .iter()

@@ -116,8 +116,8 @@ impl TrainConfig {
                 poses: 2000,
             },
             principal_components: None,
-            sampled_bodies: 40_000,
-            library_repeats: 10,
+            sampled_bodies: 80_000,
+            library_repeats: 20,
             rotations: Rotations::of(&figure.views),
             augmentation: Augmentation {
                 clean_share: 0.5,
@@ -127,15 +127,15 @@ impl TrainConfig {
             batch_size: 256,
             stages: [
                 StageConfig {
+                    epochs: 3,
+                    learning_rate: 1e-3,
+                },
+                StageConfig {
                     epochs: 4,
                     learning_rate: 1e-3,
                 },
                 StageConfig {
-                    epochs: 10,
-                    learning_rate: 1e-3,
-                },
-                StageConfig {
-                    epochs: 12,
+                    epochs: 8,
                     learning_rate: 1e-3,
                 },
             ],
