@@ -43,6 +43,7 @@ impl Search<'_> {
         facing: f32,
         twin: Option<&Way>,
     ) -> Step {
+        self.count(1);
         let chain = &self.body.chains[index];
         let unit = self.ink.tolerance_length;
         let (mut cost, mut leftover) = (reading.cost, reading.leftover);
@@ -76,6 +77,7 @@ impl Search<'_> {
 
     /// A reading with one more chain.
     pub(super) fn grown(&self, reading: &Reading, step: &Step) -> Reading {
+        self.count(1);
         let chain = &self.body.chains[reading.ways.len()];
         let mut grown = Reading {
             cost: step.cost,
