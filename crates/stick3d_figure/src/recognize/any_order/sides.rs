@@ -135,7 +135,10 @@ pub(crate) fn swap<T>(pair: &Pair, joints: &mut [T]) {
 
 /// Puts the limbs of every pair on the sides that the rule gives them. Gives the pairs that lie too close together for
 /// the rule to mean much.
-pub(super) fn put_on_sides(figure: &Figure, joints: &mut [Option<Vec2>]) -> Vec<Pair> {
+pub(in crate::recognize) fn put_on_sides(
+    figure: &Figure,
+    joints: &mut [Option<Vec2>],
+) -> Vec<Pair> {
     let mut ambiguous = Vec::new();
     let Some(frame) = Frame::of(figure, joints) else {
         return ambiguous;
