@@ -46,11 +46,8 @@ fn finished(drawing: &SketchDrawing) -> (String, &'static str) {
 fn in_any_order(drawing: &SketchDrawing) -> (String, &'static str) {
     if drawing.strokes().is_empty() {
         return (
-            format!(
-                "Draw a {} of sticks",
-                drawing.figure().name.replace('_', " ")
-            ),
-            "Any order, any strokes. The faint figure shows how.",
+            format!("Draw the {}", drawing.figure().name.replace('_', " ")),
+            "Any strokes in any order: the faint figure shows how.",
         );
     }
     let figure = drawing.figure();
@@ -181,8 +178,8 @@ mod tests {
     fn the_first_words_are_the_first_bone() {
         let mut drawing = SketchDrawing::default();
         let words = next_step(&drawing);
-        assert_eq!(words.headline, "Draw a human of sticks");
-        assert!(words.hint.starts_with("Any order"));
+        assert_eq!(words.headline, "Draw the human");
+        assert!(words.hint.starts_with("Any strokes in any order"));
         drawing.set_order(DrawingOrder::Guided);
         let words = next_step(&drawing);
         assert_eq!(words.headline, "Draw forehead to neck");
@@ -198,7 +195,7 @@ mod tests {
             [name(0, 3), name(1, 3), name(2, 3)],
             ["Source", "Key 2", "Target"]
         );
-        assert_eq!(key_words(0, 2, &drawing).hint, "Draw a human of sticks");
+        assert_eq!(key_words(0, 2, &drawing).hint, "Draw the human");
     }
 
     #[test]

@@ -15,6 +15,8 @@ const MAX_RATIO: f32 = 1.8;
 /// What the factor's logarithm costs, and a new end far from the old one, in parts of the extent.
 const RATIO_COST: f32 = 0.2;
 const END_COST: f32 = 0.15;
+/// What it costs to take a stroke for the first bones of a limb alone.
+const BEGUN_COST: f32 = 0.05;
 /// A stroke that bends away from its chord by this part of its length has a corner there.
 const CORNER: f32 = 0.1;
 
@@ -54,7 +56,9 @@ pub fn redrawn(figure: &Figure, sketch: &Sketch, stroke: &Stroke) -> Option<Sket
                 continue;
             }
             let moved = end.distance(points[last]) / extent;
-            let cost = beside + RATIO_COST * ratio + END_COST * moved;
+            let is_begun = figure.bones.iter().filter(|b| b.contains(&last)).count() > 1;
+            let begun = if is_begun { BEGUN_COST } else { 0.0 };
+            let cost = beside + RATIO_COST * ratio + END_COST * moved + begun;
             if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
                 best = Some((cost, run, line));
             }
