@@ -49,6 +49,14 @@ for _ in $(seq 120); do
 done
 sleep 6
 
+# The order of the path says which limb is which; in any order a rule would.
+xdotool windowfocus "$(xdotool search --name 'stick3d pose editor' | tail -n 1)"
+sleep 1
+xdotool keydown o
+sleep 1
+xdotool keyup o
+sleep 2
+
 RANDOM=7
 tremor() { echo $((RANDOM % 5 - 2)); }
 stroke() {

@@ -316,3 +316,172 @@ fn positions_that_are_not_finite_are_left_out() {
     assert_eq!(strokes.len(), 1);
     assert!(strokes[0].positions().all(|position| position.is_finite()));
 }
+
+/// The bones from the feet up, the head last, and each toward the middle of the body.
+fn from_the_feet_up() -> Vec<(&'static str, &'static str)> {
+    BONES.iter().rev().map(|&(from, to)| (to, from)).collect()
+}
+
+fn swap_sides(studio: &mut Studio) -> bool {
+    let canvas = studio.canvas;
+    let mut drawing = studio
+        .app
+        .world_mut()
+        .get_mut::<SketchDrawing>(canvas)
+        .unwrap();
+    let swapped = drawing.swap_sides();
+    studio.app.update();
+    swapped
+}
+
+fn joint_px(studio: &Studio, name: &str) -> Vec2 {
+    screen_from_canvas(AREA, studio.drawing().joints()[joint(name)].unwrap())
+}
+
+#[test]
+fn strokes_in_another_order_are_the_same_man() {
+    let mut studio = Studio::new(false);
+    draw(&mut studio, &from_the_feet_up());
+    assert_eq!(studio.seen().completed, 1);
+    for joint in &Figure::human().joints {
+        let (drawn, meant) = (joint_px(&studio, &joint.name), place(&joint.name));
+        assert!(
+            drawn.distance(meant) < 14.0,
+            "{}: {drawn} for {meant}",
+            joint.name
+        );
+    }
+    assert_eq!(status(&studio.app, studio.man), FigureStatus::Ready);
+}
+
+#[test]
+fn the_guided_order_is_there_for_who_wants_it() {
+    let mut studio = Studio::new(true);
+    let mut canvas = studio
+        .app
+        .world_mut()
+        .get_mut::<SketchCanvas>(studio.canvas)
+        .unwrap();
+    canvas.order = DrawingOrder::Guided;
+    studio.app.update();
+    // His left arm first: along the path the first arm is the right one.
+    let mut bones = BONES;
+    bones[1..5].rotate_left(2);
+    draw(&mut studio, &bones);
+    assert_eq!(studio.seen().completed, 1);
+    assert!(joint_px(&studio, "hand_r").distance(place("hand_l")) < 14.0);
+}
+
+#[test]
+fn the_body_settles_while_limbs_are_missing() {
+    let mut studio = Studio::new(true);
+    let bones = from_the_feet_up();
+    let is_preview = |studio: &Studio| {
+        studio
+            .app
+            .world()
+            .get::<SketchPreview>(studio.man)
+            .is_some()
+    };
+    // Both legs, then the torso: after its stroke the body stands there.
+    draw(&mut studio, &bones[..5]);
+    assert!(is_preview(&studio));
+    assert!(joint_px(&studio, "foot_l").distance(place("foot_l")) < 14.0);
+    let guessed = positions(&studio.app, studio.man).unwrap();
+    draw(&mut studio, &bones[5..7]);
+    assert!(is_preview(&studio));
+    assert_ne!(positions(&studio.app, studio.man).unwrap(), guessed);
+    draw(&mut studio, &bones[7..]);
+    assert!(!is_preview(&studio));
+}
+
+#[test]
+fn a_limb_under_the_pointer_changes_sides() {
+    let mut studio = Studio::new(true);
+    draw(&mut studio, &BONES[..9]);
+    studio.move_to(place("knee_r"));
+    studio.app.update();
+    assert!(swap_sides(&mut studio));
+    // It stays so when more is drawn.
+    draw(&mut studio, &BONES[9..]);
+    assert_eq!(studio.seen().completed, 1);
+    assert!(joint_px(&studio, "foot_r").distance(place("foot_l")) < 14.0);
+    assert!(joint_px(&studio, "hand_r").distance(place("hand_r")) < 14.0);
+    studio.move_to((place("neck") + place("elbow_l")) / 2.0);
+    studio.app.update();
+    assert!(swap_sides(&mut studio));
+    assert!(joint_px(&studio, "hand_r").distance(place("hand_l")) < 14.0);
+    let body = positions(&studio.app, studio.man).unwrap();
+    let canvas = studio.canvas;
+    studio
+        .app
+        .world_mut()
+        .get_mut::<SketchDrawing>(canvas)
+        .unwrap()
+        .undo();
+    studio.app.update();
+    assert!(joint_px(&studio, "hand_r").distance(place("hand_r")) < 14.0);
+    assert_ne!(positions(&studio.app, studio.man).unwrap(), body);
+}
+
+#[test]
+fn a_click_pins_a_foot_that_then_stays() {
+    let mut studio = Studio::new(false);
+    draw(&mut studio, &BONES);
+    let foot = joint_px(&studio, "foot_l");
+    studio.press(foot);
+    studio.app.update();
+    studio.release(foot);
+    studio.app.update();
+    assert!(studio.drawing().pins()[joint("foot_l")]);
+    let hips = joint_px(&studio, "abdomen");
+    studio.press(hips);
+    for step in 1..=10 {
+        studio.move_to(hips + vec2(0.0, 5.0 * step as f32));
+        studio.app.update();
+    }
+    studio.release(hips + vec2(0.0, 50.0));
+    studio.app.update();
+    assert!(joint_px(&studio, "foot_l").distance(foot) < 0.1);
+    assert!(joint_px(&studio, "foot_r").y > place("foot_r").y + 30.0);
+}
+
+#[test]
+fn no_joint_jumps_while_a_hand_goes_round_its_shoulder() {
+    let mut studio = Studio::new(false);
+    draw(&mut studio, &BONES);
+    let (hand, neck) = (joint_px(&studio, "hand_r"), joint_px(&studio, "neck"));
+    let joints = |studio: &Studio| -> Vec<Vec2> {
+        studio
+            .drawing()
+            .joints()
+            .iter()
+            .map(|point| point.unwrap())
+            .collect()
+    };
+    studio.press(hand);
+    studio.app.update();
+    let mut before = joints(&studio);
+    let mut body = positions(&studio.app, studio.man).unwrap();
+    // Inwards on a spiral, and past the neck. Pixels are 1.67 canvas units.
+    for step in 1..=400 {
+        let turn = step as f32 * 0.04;
+        let arm = (hand - neck).rotate(Vec2::from_angle(turn)) * (1.0 - step as f32 / 400.0);
+        studio.move_to(neck + arm);
+        studio.app.update();
+        let now = joints(&studio);
+        let moved = ((hand - neck).length() * 0.04 + 1.0) * 1.67;
+        for (joint, (now, before)) in now.iter().zip(&before).enumerate() {
+            assert!(
+                now.distance(*before) < 5.0 * moved + 1.0,
+                "{step}: joint {joint}"
+            );
+        }
+        before = now;
+        let bones = positions(&studio.app, studio.man).unwrap();
+        assert_eq!(bones.len(), body.len());
+        body = bones;
+    }
+    assert!(body.iter().all(|position| position.is_finite()));
+    studio.release(neck);
+}

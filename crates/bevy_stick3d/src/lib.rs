@@ -93,8 +93,8 @@ pub mod prelude {
 
     pub use crate::animation::{PlayStickClip, RootMotion, StickClip, StickClips};
     pub use crate::sketch_input::{
-        CanvasArea, SketchCanvas, SketchChanged, SketchCompleted, SketchDrawing, StrokeFinished,
-        StrokeUndone,
+        CanvasArea, DrawingOrder, SketchCanvas, SketchChanged, SketchCompleted, SketchDrawing,
+        StrokeFinished, StrokeUndone,
     };
     pub use crate::{
         FigureStatus, Grounded, Latent, Stick3dPlugin, Stick3dStatus, Stick3dSystems, StickFigure,

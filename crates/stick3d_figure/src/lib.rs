@@ -57,13 +57,13 @@ pub mod simulate;
 pub mod sketch;
 pub mod stroke;
 
-pub use edit::{Drag, History};
+pub use edit::{Drag, Grip, History};
 pub use figure::{Anchor, Figure, FigureError, Joint, Side};
 pub use interchange::{Drawing, InterchangeError};
 pub use mesh::{MeshError, NormalAdjacency, TriangleMesh};
 pub use preview::complete_from_template;
 pub use recognize::any_order::{AnyOrder, recognize_any};
-pub use recognize::{Pen, Progress, RecognizeError, progress, recognize};
+pub use recognize::{FreeReading, Pen, Progress, RecognizeError, progress, read_freely, recognize};
 pub use regressor::{JointRegressor, RegressorError};
 pub use scribble::is_scribble;
 pub use sketch::{Sketch, SketchError};

@@ -55,7 +55,7 @@ fn drawn_scale(figure: &Figure, placed: &[Option<Vec2>]) -> Option<f32> {
 }
 
 /// Which way round the template has to be for what is drawn: 1 or -1 for x and y.
-fn turned(figure: &Figure, placed: &[Option<Vec2>]) -> Vec2 {
+pub(crate) fn turned(figure: &Figure, placed: &[Option<Vec2>]) -> Vec2 {
     let center = (0..placed.len()).filter(|&j| figure.mirror_of(j) == j);
     let drawn: Vec<(Vec2, Vec2)> = center
         .filter_map(|j| Some((placed[j]?, figure.template[j])))

@@ -9,7 +9,7 @@ use stick3d_figure::{Figure, Side, Sketch};
 use super::header::Header;
 use super::theme::{self, faded, side_color};
 use super::words::Words;
-use crate::sketch_input::{SketchDrawing, screen_from_canvas};
+use crate::sketch_input::{DrawingOrder, SketchDrawing, screen_from_canvas};
 
 /// Lower cards have no room for hints.
 pub(super) const LOW: f32 = 340.0;
@@ -101,7 +101,8 @@ pub(super) fn paint(painter: &Painter, card: &Card, pulse: f32) {
             guide(painter, to_screen, drawing);
             recognised(painter, to_screen, drawing);
             ink(painter, to_screen, drawing, 0.92);
-            if card.is_selected {
+            let is_guided = drawing.order() == DrawingOrder::Guided;
+            if card.is_selected && is_guided {
                 next_joint(painter, to_screen, drawing, pulse);
             }
         }
@@ -290,6 +291,7 @@ fn finished(painter: &Painter, to_screen: ToScreen, drawing: &SketchDrawing, poi
     }
     side_letters(painter, to_screen, figure, points, 1.0);
     let held = drawing.dragged().or(drawing.hovered());
+    let pins = drawing.pins();
     for (joint, point) in points.iter().enumerate() {
         let (at, side) = (to_screen.point(*point), figure.joints[joint].side);
         if held == Some(joint) {
@@ -298,7 +300,17 @@ fn finished(painter: &Painter, to_screen: ToScreen, drawing: &SketchDrawing, poi
         } else {
             handle(painter, at, side, 8.0 * size);
         }
+        if pins[joint] {
+            pin(painter, at, size);
+        }
     }
+}
+
+/// A pin through a joint: a ring round it and its head in the middle.
+fn pin(painter: &Painter, at: Pos2, size: f32) {
+    painter.circle_stroke(at, 14.0 * size, Stroke::new(2.4 * size, theme::INK));
+    painter.circle_filled(at, 4.2 * size, theme::INK);
+    painter.circle_filled(at - vec2(1.1, 1.1) * size, 1.4 * size, theme::PAPER);
 }
 
 /// A joint: filled on the right and in the middle, open on the left.

@@ -10,7 +10,7 @@ use super::status_line::StatusLine;
 use super::theme;
 use super::timeline::controls;
 use super::timeline::history::Document;
-use crate::sketch_input::SketchDrawing;
+use crate::sketch_input::{DrawingOrder, SketchDrawing};
 
 /// The file field is at most so wide, points.
 const FILE_WIDTH: f32 = 200.0;
@@ -33,13 +33,15 @@ const FIGURE_KEYS: [Key; 9] = [
 ];
 
 /// The keys, the longer combinations first: a match takes the key from those after it.
-const SHORTCUTS: [(Modifiers, Key, Action); 7] = [
+const SHORTCUTS: [(Modifiers, Key, Action); 9] = [
     (COMMAND_SHIFT, Key::Z, Action::Redo),
     (Modifiers::COMMAND, Key::Y, Action::Redo),
     (Modifiers::COMMAND, Key::Z, Action::Undo),
     (Modifiers::COMMAND, Key::S, Action::Save),
     (Modifiers::COMMAND, Key::O, Action::Open),
     (Modifiers::NONE, Key::M, Action::Mirror),
+    (Modifiers::NONE, Key::X, Action::SwapSides),
+    (Modifiers::NONE, Key::O, Action::Order),
     (Modifiers::NONE, Key::Escape, Action::Clear),
 ];
 
@@ -121,6 +123,7 @@ pub(super) fn tools(
     ui: &mut Ui,
     rect: Rect,
     drawing: &SketchDrawing,
+    order: DrawingOrder,
     document: &Document,
 ) -> Option<Action> {
     let begun = !drawing.strokes().is_empty() || drawing.sketch().is_some();
@@ -134,6 +137,26 @@ pub(super) fn tools(
         ),
         Tool::new("Redo", "Ctrl+Shift+Z", document.can_redo(), Action::Redo),
         Tool::new("Mirror", "M", finished, Action::Mirror),
+        Tool::new(
+            "L/R",
+            "X exchanges left and right of the arms or legs you last pointed at",
+            begun && drawing.limb().is_some(),
+            Action::SwapSides,
+        ),
+        match order {
+            DrawingOrder::Any => Tool::new(
+                "Guide",
+                "O: draw in the order that is shown, which says which limb is which",
+                true,
+                Action::Order,
+            ),
+            DrawingOrder::Guided => Tool::new(
+                "Any order",
+                "O: draw in whatever order you like",
+                true,
+                Action::Order,
+            ),
+        },
         Tool::new("Clear", "Esc", begun, Action::Clear),
     ];
     let mut asked = None;

@@ -79,7 +79,13 @@ fn asked_of_panels(ui: &mut egui::Ui, layout: &Layout, desk: &mut Desk) -> Optio
     let chosen = switch::show(ui, layout.choices, choices, active);
     let mut file = desk.session.file()?.to_owned();
     let choice = desk.session.choice()?;
-    let of_tools = panels::tools(ui, layout.tools, desk.drawing()?, &choice.document);
+    let of_tools = panels::tools(
+        ui,
+        layout.tools,
+        desk.drawing()?,
+        desk.session.order(),
+        &choice.document,
+    );
     let mode = desk.session.mode();
     let can_save = match mode {
         Mode::Pose => desk.drawing()?.sketch().is_some(),

@@ -3,7 +3,7 @@
 use stick3d_figure::names::suggestion;
 use stick3d_figure::{Figure, Side};
 
-use crate::sketch_input::SketchDrawing;
+use crate::sketch_input::{DrawingOrder, SketchDrawing};
 
 /// What the editor says above the canvas.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,49 +16,80 @@ pub(super) struct Words {
 
 /// What to do next with a drawing.
 pub(super) fn next_step(drawing: &SketchDrawing) -> Words {
-    let figure = drawing.figure();
-    if drawing.sketch().is_some() {
-        let held = drawing.dragged().or(drawing.hovered());
-        return Words {
-            headline: match held {
-                Some(joint) => format!("Drag the {}", joint_words(figure, joint)),
-                None => "Drag any joint".to_owned(),
-            },
-            hint: "The body follows. Esc starts over, M mirrors.".to_owned(),
-        };
-    }
-    let begun = !drawing.strokes().is_empty();
-    let (headline, hint) = match drawing.next_bone() {
-        Some((Some(from), to)) => (
-            format!(
-                "Draw {} to {}",
-                joint_words(figure, from),
-                joint_words(figure, to)
-            ),
-            "Scribble over it to take back the last stroke.",
-        ),
-        Some((None, to)) => (
-            match figure.path.get(1) {
-                Some(&next) => format!(
-                    "Draw {} to {}",
-                    joint_words(figure, to),
-                    joint_words(figure, next)
-                ),
-                None => format!("Start at the {}", joint_words(figure, to)),
-            },
-            "Follow the faint figure: one stroke per bone, or one long line.",
-        ),
-        None => ("Finish the line".to_owned(), ""),
-    };
-    let hint = if begun || !hint.starts_with("Scribble") {
-        hint
-    } else {
-        "Follow the faint figure: one stroke per bone, or one long line."
+    let (headline, hint) = match (drawing.sketch(), drawing.order()) {
+        (Some(_), _) => finished(drawing),
+        (None, DrawingOrder::Any) => in_any_order(drawing),
+        (None, DrawingOrder::Guided) => guided(drawing),
     };
     Words {
         headline,
         hint: hint.to_owned(),
     }
+}
+
+fn finished(drawing: &SketchDrawing) -> (String, &'static str) {
+    let Some(joint) = drawing.dragged().or(drawing.hovered()) else {
+        let hint = "Click a joint to pin it. X swaps left and right, M mirrors, Esc starts over.";
+        return ("Drag any joint".to_owned(), hint);
+    };
+    let headline = format!("Drag the {}", joint_words(drawing.figure(), joint));
+    let hint = match (drawing.is_free_drag(), drawing.pins().get(joint)) {
+        (true, _) => "Alt: bones stretch.",
+        (false, Some(true)) => {
+            "Pinned: a click lets it go. Bones keep their length, Alt stretches."
+        }
+        _ => "Bones keep their length, Alt stretches. A click pins it.",
+    };
+    (headline, hint)
+}
+
+fn in_any_order(drawing: &SketchDrawing) -> (String, &'static str) {
+    if drawing.strokes().is_empty() {
+        return (
+            format!("Draw the {}", drawing.figure().name.replace('_', " ")),
+            "Any strokes in any order: the faint figure shows how.",
+        );
+    }
+    let figure = drawing.figure();
+    let placed = &drawing.live_progress().placed;
+    let ends = |joint: &usize| figure.bones.iter().filter(|b| b.contains(joint)).count() == 1;
+    let mut missing = (0..placed.len()).filter(|joint| placed[*joint].is_none());
+    let hint = "X swaps left and right of a limb. Scribble takes back the last stroke.";
+    if drawing.guess().is_none() {
+        return ("Go on: the body comes with its torso".to_owned(), hint);
+    }
+    let headline = match (missing.clone().find(ends), missing.next()) {
+        (Some(joint), _) | (None, Some(joint)) => {
+            format!("Go on, to the {}", joint_words(figure, joint))
+        }
+        (None, None) => "Finish the line".to_owned(),
+    };
+    (headline, hint)
+}
+
+fn guided(drawing: &SketchDrawing) -> (String, &'static str) {
+    let figure = drawing.figure();
+    let bone = |from: usize, to: usize| {
+        format!(
+            "Draw {} to {}",
+            joint_words(figure, from),
+            joint_words(figure, to)
+        )
+    };
+    let headline = match drawing.next_bone() {
+        Some((Some(from), to)) => bone(from, to),
+        Some((None, to)) => match figure.path.get(1) {
+            Some(&next) => bone(to, next),
+            None => format!("Start at the {}", joint_words(figure, to)),
+        },
+        None => return ("Finish the line".to_owned(), ""),
+    };
+    let hint = if drawing.strokes().is_empty() {
+        "Follow the faint figure: one stroke per bone, or one long line."
+    } else {
+        "Scribble over it to take back the last stroke."
+    };
+    (headline, hint)
 }
 
 /// What to do next with the drawing of a key, the `place`th of `count` from 0.
@@ -145,7 +176,12 @@ mod tests {
 
     #[test]
     fn the_first_words_are_the_first_bone() {
-        let words = next_step(&SketchDrawing::default());
+        let mut drawing = SketchDrawing::default();
+        let words = next_step(&drawing);
+        assert_eq!(words.headline, "Draw the human");
+        assert!(words.hint.starts_with("Any strokes in any order"));
+        drawing.set_order(DrawingOrder::Guided);
+        let words = next_step(&drawing);
         assert_eq!(words.headline, "Draw forehead to neck");
         assert!(words.hint.starts_with("Follow the faint figure"));
     }
@@ -159,7 +195,7 @@ mod tests {
             [name(0, 3), name(1, 3), name(2, 3)],
             ["Source", "Key 2", "Target"]
         );
-        assert_eq!(key_words(0, 2, &drawing).hint, "Draw forehead to neck");
+        assert_eq!(key_words(0, 2, &drawing).hint, "Draw the human");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use bevy::camera::NormalizedRenderTarget;
 use bevy::prelude::*;
 
-use super::drawing::SketchDrawing;
+use super::drawing::{DrawingOrder, SketchDrawing};
 
 /// Canvas units along the shorter side of a canvas.
 pub const CANVAS_SIZE: f32 = 1000.0;
@@ -16,8 +16,9 @@ pub const CANVAS_SIZE: f32 = 1000.0;
 /// unless you insert a drawing of another figure.
 ///
 /// # What it does
-/// Strokes that follow the figure's sketch path become a [`StickSketch`](crate::StickSketch) on the
-/// [`figure`](SketchCanvas::figure); after that the joints can be dragged. It needs Bevy's pointers
+/// Strokes become a [`StickSketch`](crate::StickSketch) on the [`figure`](SketchCanvas::figure), in any order unless
+/// [`order`](SketchCanvas::order) says otherwise. After that the joints can be dragged: bones keep their lengths,
+/// unless Alt is held. A click on a joint pins it, a stroke draws a limb anew. It needs Bevy's pointers
 /// (`bevy_picking`, in the default plugins of most apps).
 ///
 /// # Canvas units
@@ -35,6 +36,8 @@ pub struct SketchCanvas {
     /// Whether an unfinished sketch is shown on the figure, once its middle line is drawn: the missing limbs
     /// are guessed, and the figure is marked with [`SketchPreview`].
     pub preview: bool,
+    /// In which order strokes are expected.
+    pub order: DrawingOrder,
     /// Whether the pointer draws.
     pub enabled: bool,
 }
@@ -46,6 +49,7 @@ impl SketchCanvas {
             area,
             figure: Some(figure),
             preview: false,
+            order: DrawingOrder::default(),
             enabled: true,
         }
     }
@@ -54,6 +58,13 @@ impl SketchCanvas {
     #[must_use]
     pub fn with_preview(mut self) -> Self {
         self.preview = true;
+        self
+    }
+
+    /// Expects strokes along the figure's sketch path.
+    #[must_use]
+    pub fn guided(mut self) -> Self {
+        self.order = DrawingOrder::Guided;
         self
     }
 }

@@ -1,17 +1,21 @@
 //! A drawing in the making: strokes, the joints they show, then joints to drag. Knows no pointer and no screen.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use bevy::prelude::*;
-use stick3d_figure::edit::{Drag, History, mirrored_in_place, nearest_joint};
-use stick3d_figure::{Figure, Pen, Progress, Sketch, SketchError, Stroke, is_scribble, progress};
+use stick3d_figure::edit::{
+    History, limb_pair, mirrored_in_place, nearest_bone, swap_pair, swap_pair_in,
+};
+use stick3d_figure::{
+    Figure, FreeReading, Pen, Progress, Sketch, SketchError, Stroke, progress, read_freely,
+};
 
-use super::guide::{fitted, guide, is_enough};
+use super::guide::{fitted, guide, is_enough, usual_scale};
+use super::pen::PenState;
 
 /// How near to a joint the pen takes hold of it, canvas units.
 pub const GRAB_RADIUS: f32 = 28.0;
-/// Shorter strokes are slips, canvas units.
-const SLIP: f32 = 8.0;
 /// So many steps can be undone.
 const MAX_UNDO: usize = 200;
 
@@ -36,15 +40,33 @@ pub struct Ink {
     pub strokes: Vec<Stroke>,
     /// Once all joints have their place.
     pub sketch: Option<Sketch>,
+    /// The joints of the sketch that are pinned.
+    pub pins: BTreeSet<usize>,
+    /// The pairs of limbs that are exchanged, compared with how the strokes are read: the least joint of each.
+    pub exchanged: BTreeSet<usize>,
 }
 
-/// What the pen is doing.
-#[derive(Clone, Debug, Default)]
-enum PenState {
+impl Ink {
+    /// A whole sketch, from elsewhere than from strokes.
+    pub fn of_sketch(sketch: Sketch) -> Self {
+        Self {
+            sketch: Some(sketch),
+            ..Self::default()
+        }
+    }
+}
+
+/// In which order strokes are expected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Debug, Default, PartialEq, Hash, Clone)]
+pub enum DrawingOrder {
+    /// In whatever order, direction and pieces; those along the figure's sketch path are read as well as ever. The
+    /// limbs' sides follow a rule (the man faces the viewer; see [`recognize_any`](stick3d_figure::recognize_any)),
+    /// and a pair can be exchanged.
     #[default]
-    Idle,
-    Drawing(Stroke),
-    Dragging(Drag),
+    Any,
+    /// Along the figure's sketch path, which says which limb is which.
+    Guided,
 }
 
 /// What was drawn on a canvas, in canvas units with y up. Everything can be undone.
@@ -53,16 +75,24 @@ enum PenState {
 #[derive(Component, Clone, Debug, Reflect)]
 #[reflect(opaque, Component, Debug, Clone)]
 pub struct SketchDrawing {
-    figure: Arc<Figure>,
-    history: History<Ink>,
+    pub(super) figure: Arc<Figure>,
+    order: DrawingOrder,
+    pub(super) history: History<Ink>,
     /// What is shown: the history's present, but for a joint in hand.
-    ink: Ink,
-    progress: Progress,
+    pub(super) ink: Ink,
+    /// What the strokes were read as.
+    pub(super) reading: FreeReading,
     /// The progress with the stroke that is being drawn, once it was read.
-    live: Option<Progress>,
-    pen: PenState,
-    hovered: Option<usize>,
-    changes: Vec<DrawingChange>,
+    pub(super) live: Option<Progress>,
+    pub(super) pen: PenState,
+    pub(super) hovered: Option<usize>,
+    /// A joint of the limb that the pointer was over last.
+    limb: Option<usize>,
+    /// Whether dragged joints move alone.
+    pub(super) is_free_drag: bool,
+    /// Per bone how long it was before it was foreshortened by dragging; empty where none was.
+    pub(super) longest: Vec<f32>,
+    pub(super) changes: Vec<DrawingChange>,
 }
 
 impl Default for SketchDrawing {
@@ -77,13 +107,17 @@ impl SketchDrawing {
     pub fn new(figure: impl Into<Arc<Figure>>) -> Self {
         let figure = figure.into();
         Self {
-            progress: progress(&figure, &[], Pen::Up),
+            reading: along_path(&figure, &[]),
             figure,
+            order: DrawingOrder::default(),
             history: History::new(Ink::default(), MAX_UNDO),
             ink: Ink::default(),
             live: None,
             pen: PenState::Idle,
             hovered: None,
+            limb: None,
+            is_free_drag: false,
+            longest: Vec::new(),
             changes: Vec::new(),
         }
     }
@@ -103,6 +137,38 @@ impl SketchDrawing {
         &self.ink
     }
 
+    /// In which order strokes are expected.
+    pub fn order(&self) -> DrawingOrder {
+        self.order
+    }
+
+    /// Sets in which order strokes are expected. What is drawn already is read anew.
+    pub fn set_order(&mut self, order: DrawingOrder) {
+        if self.order == order {
+            return;
+        }
+        self.order = order;
+        if self.ink.sketch.is_none() && !self.ink.strokes.is_empty() {
+            self.show(self.ink.clone());
+        }
+    }
+
+    /// Whether the strokes so far follow the figure's sketch path, as far as can be told.
+    pub fn is_along_path(&self) -> bool {
+        self.reading.along_path
+    }
+
+    /// Per joint whether it is pinned: it stays where it is when others are dragged.
+    pub fn pins(&self) -> Vec<bool> {
+        let joints = 0..self.figure.joint_count();
+        joints.map(|joint| self.ink.pins.contains(&joint)).collect()
+    }
+
+    /// Whether dragged joints move alone, their bones becoming as long as need be.
+    pub fn is_free_drag(&self) -> bool {
+        self.is_free_drag
+    }
+
     /// The stroke that is being drawn.
     pub fn pen_stroke(&self) -> Option<&Stroke> {
         match &self.pen {
@@ -113,12 +179,12 @@ impl SketchDrawing {
 
     /// Where the joints are as far as they are known, in the order of the figure's joints.
     pub fn joints(&self) -> &[Option<Vec2>] {
-        &self.progress.placed
+        &self.reading.progress.placed
     }
 
     /// How far the drawing has come, the stroke that is being drawn included.
     pub fn live_progress(&self) -> &Progress {
-        self.live.as_ref().unwrap_or(&self.progress)
+        self.live.as_ref().unwrap_or(&self.reading.progress)
     }
 
     /// The sketch, once every joint has its place.
@@ -128,7 +194,8 @@ impl SketchDrawing {
 
     /// The unfinished sketch with its missing limbs guessed, once the middle of the body is drawn.
     pub fn guess(&self) -> Option<Vec<Vec2>> {
-        is_enough(&self.figure, self.joints()).then(|| guide(&self.figure, self.joints()))
+        let is_known = self.reading.is_sure && is_enough(&self.figure, self.joints());
+        is_known.then(|| guide(&self.figure, self.joints()))
     }
 
     /// Where all joints should come to be: the known ones where they are, the others as the template has them.
@@ -154,7 +221,7 @@ impl SketchDrawing {
     /// The joint that is being dragged.
     pub fn dragged(&self) -> Option<usize> {
         match &self.pen {
-            PenState::Dragging(drag) => Some(drag.joint()),
+            PenState::Dragging(held) => Some(held.joint()),
             _ => None,
         }
     }
@@ -175,150 +242,75 @@ impl SketchDrawing {
     }
 }
 
-/// The pen.
+/// Limbs and pins.
 impl SketchDrawing {
-    /// The pen touches down: takes hold of a joint of a finished sketch, or begins a stroke.
-    pub fn press(&mut self, at: Vec2, time_s: f64) {
-        let taken = self
-            .sketch()
-            .and_then(|sketch| Drag::begin(sketch, at, GRAB_RADIUS));
-        let mut stroke = Stroke::default();
-        self.pen = match taken {
-            Some(drag) => PenState::Dragging(drag),
-            None if stroke.push(at, time_s).is_ok() => PenState::Drawing(stroke),
-            None => PenState::Idle,
+    /// Remembers the limb at a place, if there is one.
+    pub(super) fn look_at(&mut self, at: Vec2) {
+        if self.ink == Ink::default() {
+            return;
+        }
+        let points = self.guide();
+        let bone = nearest_bone(&self.figure, &points, at, GRAB_RADIUS);
+        let joints = bone.map_or(vec![], |bone| self.figure.bones[bone].to_vec());
+        let mut near = self.hovered.into_iter().chain(joints);
+        if let Some(joint) = near.find(|&joint| limb_pair(&self.figure, joint).is_some()) {
+            self.limb = Some(joint);
+        }
+    }
+
+    /// A joint of the limb that the pointer was over last.
+    pub fn limb(&self) -> Option<usize> {
+        self.limb
+    }
+
+    /// Exchanges the left and the right limb of the pair that the pointer was over last. Says whether there was one.
+    pub fn swap_sides(&mut self) -> bool {
+        let Some(joint) = self.limb.filter(|_| self.ink != Ink::default()) else {
+            return false;
         };
-        self.hovered = self.dragged();
-    }
-
-    /// The pen moves, touching or not. A position that is not finite is left out.
-    pub fn move_to(&mut self, at: Vec2, time_s: f64) {
-        match &mut self.pen {
-            PenState::Idle => {
-                self.hovered = self
-                    .ink
-                    .sketch
-                    .as_ref()
-                    .and_then(|sketch| nearest_joint(sketch, at, GRAB_RADIUS));
-            }
-            PenState::Drawing(stroke) => {
-                let moved = stroke
-                    .points()
-                    .last()
-                    .is_none_or(|last| last.position_px.distance_squared(at) > 0.25);
-                if moved && stroke.push(at, time_s).is_ok() {
-                    self.live = None;
-                }
-            }
-            PenState::Dragging(drag) => {
-                let drag = *drag;
-                self.drag_to(drag, at);
-            }
-        }
-    }
-
-    /// The pointer is elsewhere.
-    pub fn leave(&mut self) {
-        self.hovered = None;
-    }
-
-    /// The pen lifts: a stroke is read, or a joint let go.
-    pub fn release(&mut self) {
-        self.live = None;
-        match std::mem::take(&mut self.pen) {
-            PenState::Idle => {}
-            PenState::Drawing(stroke) => self.finish_stroke(stroke),
-            PenState::Dragging(_) => self.history.push(self.ink.clone()),
-        }
-    }
-
-    /// The pen is gone without lifting: nothing was drawn.
-    pub fn cancel(&mut self) {
-        self.live = None;
-        if let PenState::Dragging(_) = std::mem::take(&mut self.pen) {
-            self.show(self.history.present().clone());
-        }
-    }
-
-    /// Whether the stroke that is being drawn went on since [`SketchDrawing::read_pen`].
-    pub fn is_pen_unread(&self) -> bool {
-        self.ink.sketch.is_none() && self.live.is_none() && self.pen_stroke().is_some()
-    }
-
-    /// Reads the stroke that is being drawn, so that guides can follow the pen.
-    pub fn read_pen(&mut self) {
-        if self.is_pen_unread()
-            && let PenState::Drawing(stroke) = &self.pen
-        {
-            let tip = stroke.points().last().map(|point| point.position_px);
-            let mut strokes = self.ink.strokes.clone();
-            strokes.push(stroke.clone());
-            let mut live = progress(&self.figure, &strokes, Pen::Down);
-            // The joint under the pen is still on its way: guides that followed it would flutter.
-            for (live, settled) in live.placed.iter_mut().zip(&self.progress.placed) {
-                let at_tip = live
-                    .zip(tip)
-                    .is_some_and(|(a, b)| a.distance(b) < GRAB_RADIUS);
-                if settled.is_none() && at_tip {
-                    *live = None;
-                }
-            }
-            self.live = Some(live);
-        }
-    }
-
-    /// Moves the joint in hand; a place that makes no sketch leaves it where it is.
-    fn drag_to(&mut self, drag: Drag, at: Vec2) {
-        let Some(sketch) = &self.ink.sketch else {
-            return;
+        let Some(pair) = limb_pair(&self.figure, joint) else {
+            return false;
         };
-        let mut moved = sketch.clone();
-        if drag.move_to(&self.figure, &mut moved, at).is_ok() && moved != *sketch {
-            self.ink = Ink {
-                // What was drawn is no longer what is meant.
-                strokes: Vec::new(),
-                sketch: Some(moved),
-            };
-            self.read();
-            self.changes.push(DrawingChange::Redrawn);
+        let mut ink = self.ink.clone();
+        let least = pair.iter().flatten().copied().min().unwrap_or(joint);
+        if !ink.exchanged.remove(&least) {
+            ink.exchanged.insert(least);
         }
+        if let Some(sketch) = &mut ink.sketch {
+            swap_pair(&self.figure, sketch, joint);
+            let mut pins = self.pins();
+            swap_pair_in(&self.figure, &mut pins, joint);
+            ink.pins = pinned(&pins);
+        }
+        self.step(ink, None);
+        true
     }
 
-    fn finish_stroke(&mut self, stroke: Stroke) {
-        if stroke.length_px() < SLIP {
+    /// Pins a joint of a finished sketch, or lets it go.
+    pub fn toggle_pin(&mut self, joint: usize) {
+        if self.ink.sketch.is_none() || joint >= self.figure.joint_count() {
             return;
         }
-        if is_scribble(&stroke, &self.lines()) {
-            self.undo();
-            return;
+        let mut ink = self.ink.clone();
+        if !ink.pins.remove(&joint) {
+            ink.pins.insert(joint);
         }
-        if self.ink.sketch.is_some() {
-            // A finished sketch is changed by its joints.
-            return;
-        }
-        self.changes
-            .push(DrawingChange::StrokeFinished(stroke.positions().collect()));
-        let mut strokes = self.ink.strokes.clone();
-        strokes.push(stroke);
-        let reading = progress(&self.figure, &strokes, Pen::Up);
-        let points: Option<Vec<Vec2>> = reading.placed.iter().copied().collect();
-        let sketch = points
-            .filter(|_| reading.complete)
-            .and_then(|points| Sketch::new(&self.figure, points).ok());
-        self.step(Ink { strokes, sketch });
+        let longest = std::mem::take(&mut self.longest);
+        self.step(ink, None);
+        self.longest = longest;
     }
+}
 
-    /// What is on the canvas to scribble over: the strokes, or the bones of a sketch that came without.
-    fn lines(&self) -> Vec<Stroke> {
-        if !self.ink.strokes.is_empty() {
-            return self.ink.strokes.clone();
-        }
-        let points = self.sketch().map_or(&[][..], Sketch::points);
-        self.figure
-            .bones
-            .iter()
-            .filter_map(|&[a, b]| Stroke::from_positions([*points.get(a)?, *points.get(b)?]).ok())
-            .collect()
+fn pinned(pins: &[bool]) -> BTreeSet<usize> {
+    (0..pins.len()).filter(|&joint| pins[joint]).collect()
+}
+
+/// Strokes read along the sketch path alone.
+fn along_path(figure: &Figure, strokes: &[Stroke]) -> FreeReading {
+    FreeReading {
+        progress: progress(figure, strokes, Pen::Up),
+        along_path: true,
+        is_sure: true,
     }
 }
 
@@ -344,7 +336,7 @@ impl SketchDrawing {
     /// Takes everything off the canvas.
     pub fn clear(&mut self) {
         if self.ink != Ink::default() {
-            self.step(Ink::default());
+            self.step(Ink::default(), None);
         }
         self.pen = PenState::Idle;
         self.live = None;
@@ -355,11 +347,13 @@ impl SketchDrawing {
         let Some(sketch) = &self.ink.sketch else {
             return false;
         };
-        let sketch = Some(mirrored_in_place(&self.figure, sketch));
-        self.step(Ink {
-            strokes: Vec::new(),
-            sketch,
-        });
+        let sketch = mirrored_in_place(&self.figure, sketch);
+        let mirrored = |joint: &usize| self.figure.mirror_of(*joint);
+        let ink = Ink {
+            pins: self.ink.pins.iter().map(mirrored).collect(),
+            ..Ink::of_sketch(sketch)
+        };
+        self.step(ink, None);
         true
     }
 
@@ -376,6 +370,8 @@ impl SketchDrawing {
         let changes = self.take_changes();
         *self = Self {
             changes,
+            order: self.order,
+            is_free_drag: self.is_free_drag,
             ..Self::new(figure.clone())
         };
         if !was_blank {
@@ -395,10 +391,7 @@ impl SketchDrawing {
     pub fn load(&mut self, sketch: &Sketch) -> Result<(), SketchError> {
         let sketch = Sketch::new(&self.figure, fitted(sketch.points()))?;
         self.pen = PenState::Idle;
-        self.step(Ink {
-            strokes: Vec::new(),
-            sketch: Some(sketch),
-        });
+        self.step(Ink::of_sketch(sketch), None);
         Ok(())
     }
 
@@ -408,7 +401,8 @@ impl SketchDrawing {
         for count in 1..ink.strokes.len() {
             self.history.push(Ink {
                 strokes: ink.strokes[..count].to_vec(),
-                sketch: None,
+                exchanged: ink.exchanged.clone(),
+                ..Ink::default()
             });
         }
         self.history.push(ink.clone());
@@ -416,36 +410,67 @@ impl SketchDrawing {
         self.show(ink);
     }
 
-    /// Goes one step on, which can be undone.
-    fn step(&mut self, ink: Ink) {
+    /// Goes one step on, which can be undone. `reading` is what the strokes show, where that is known already.
+    pub(super) fn step(&mut self, ink: Ink, reading: Option<FreeReading>) {
         if let (None, Some(sketch)) = (&self.ink.sketch, &ink.sketch) {
             self.changes
                 .push(DrawingChange::Completed(sketch.points().to_vec()));
         }
         self.history.push(ink.clone());
-        self.show(ink);
+        self.show_as(ink, reading);
     }
 
-    fn show(&mut self, ink: Ink) {
-        self.ink = ink;
+    pub(super) fn show(&mut self, ink: Ink) {
+        self.show_as(ink, None);
+    }
+
+    fn show_as(&mut self, ink: Ink, reading: Option<FreeReading>) {
         self.hovered = None;
-        self.read();
+        self.longest.clear();
+        self.live = None;
+        self.reading = match (&ink.sketch, reading) {
+            (Some(sketch), _) => of_sketch(sketch),
+            (None, Some(reading)) => reading,
+            (None, None) => self.read(&ink.strokes, &ink.exchanged),
+        };
+        self.ink = ink;
         self.changes.push(DrawingChange::Redrawn);
     }
 
-    /// Works out where the joints are.
-    fn read(&mut self) {
-        self.live = None;
-        self.progress = match &self.ink.sketch {
-            Some(sketch) => Progress {
-                placed: sketch.points().iter().copied().map(Some).collect(),
-                from_joint: None,
-                next_joint: None,
-                fraction: 1.0,
-                complete: true,
-            },
-            None => progress(&self.figure, &self.ink.strokes, Pen::Up),
+    /// Puts the sketch of a joint in hand in place of the one before, without a step.
+    pub(super) fn show_dragged(&mut self, sketch: Sketch) {
+        self.reading = of_sketch(&sketch);
+        // What was drawn is no longer what is meant.
+        self.ink.strokes.clear();
+        self.ink.sketch = Some(sketch);
+        self.changes.push(DrawingChange::Redrawn);
+    }
+
+    /// Works out what strokes show.
+    pub(super) fn read(&self, strokes: &[Stroke], exchanged: &BTreeSet<usize>) -> FreeReading {
+        let mut reading = match self.order {
+            DrawingOrder::Any => read_freely(&self.figure, strokes, usual_scale(&self.figure)),
+            DrawingOrder::Guided => along_path(&self.figure, strokes),
         };
+        for &joint in exchanged {
+            swap_pair_in(&self.figure, &mut reading.progress.placed, joint);
+        }
+        reading
+    }
+}
+
+/// A finished sketch shows all its joints.
+fn of_sketch(sketch: &Sketch) -> FreeReading {
+    FreeReading {
+        progress: Progress {
+            placed: sketch.points().iter().copied().map(Some).collect(),
+            from_joint: None,
+            next_joint: None,
+            fraction: 1.0,
+            complete: true,
+        },
+        along_path: false,
+        is_sure: true,
     }
 }
 
@@ -460,38 +485,12 @@ mod tests {
     }
 
     #[test]
-    fn a_drag_is_one_step_and_can_be_given_up() {
-        let mut drawing = loaded();
-        let before = drawing.sketch().unwrap().clone();
-        let hand = before.points()[3];
-        drawing.press(hand + Vec2::ONE, 0.0);
-        assert_eq!(drawing.dragged(), Some(3));
-        for step in 1..9 {
-            drawing.move_to(hand + Vec2::ONE * (1.0 + step as f32), 0.0);
-        }
-        drawing.move_to(Vec2::NAN, 0.0);
-        assert_eq!(
-            drawing.sketch().unwrap().points()[3],
-            hand + Vec2::splat(8.0)
-        );
-        drawing.cancel();
-        assert_eq!(drawing.sketch(), Some(&before));
-        drawing.press(hand, 0.0);
-        drawing.move_to(hand + Vec2::X * 50.0, 0.0);
-        drawing.release();
-        drawing.undo();
-        assert_eq!(drawing.sketch(), Some(&before));
-        drawing.redo();
-        assert_ne!(drawing.sketch(), Some(&before));
-    }
-
-    #[test]
     fn another_sheet_has_its_own_strokes_to_take_back() {
         let mut drawing = loaded();
         let line = |y| Stroke::from_positions([Vec2::new(0.0, y), Vec2::new(60.0, y)]).unwrap();
         let ink = Ink {
             strokes: vec![line(0.0), line(50.0)],
-            sketch: None,
+            ..Ink::default()
         };
         drawing.put_ink(ink.clone());
         assert_eq!(drawing.ink(), &ink);

@@ -49,6 +49,11 @@ pub fn fit_to_canvas(sketches: &[&[Vec2]]) -> Vec<Vec<Vec2>> {
         .collect()
 }
 
+/// How large the faint figure is, canvas units per metre.
+pub(super) fn usual_scale(figure: &Figure) -> f32 {
+    fitting_scale(&figure.template)
+}
+
 fn fitting_scale(points: &[Vec2]) -> f32 {
     let (low, high) = bounds(points);
     let size = (high - low).max(Vec2::splat(f32::MIN_POSITIVE));

@@ -3,6 +3,7 @@
 mod canvas;
 mod drawing;
 mod guide;
+mod pen;
 
 use bevy::camera::RenderTarget;
 use bevy::ecs::system::SystemParam;
@@ -18,7 +19,7 @@ pub use canvas::{
 };
 
 use canvas::nearest_on_canvas;
-pub use drawing::{DrawingChange, GRAB_RADIUS, Ink, SketchDrawing};
+pub use drawing::{DrawingChange, DrawingOrder, GRAB_RADIUS, Ink, SketchDrawing};
 pub use guide::fit_to_canvas;
 
 use crate::figure::{StickFigure, StickSketch};
@@ -38,10 +39,11 @@ impl Plugin for Stick3dSketchInputPlugin {
             .add_message::<SketchCompleted>()
             .register_type::<SketchCanvas>()
             .register_type::<SketchDrawing>()
+            .register_type::<DrawingOrder>()
             .register_type::<SketchPreview>()
             .add_systems(
                 PreUpdate,
-                (follow_models, draw_with_pointers, tell_changes)
+                (follow_canvases, draw_with_pointers, tell_changes)
                     .chain()
                     .in_set(Stick3dSystems::Input),
             )
@@ -66,13 +68,28 @@ impl PosedModels<'_, '_> {
     }
 }
 
-/// Drawings become such of the figures whose models their canvases pose.
-fn follow_models(models: PosedModels, mut canvases: Query<(&SketchCanvas, &mut SketchDrawing)>) {
+/// Drawings become such of the figures whose models their canvases pose, in the order that the canvases want, and let
+/// joints be dragged alone while Alt is held.
+fn follow_canvases(
+    models: PosedModels,
+    keys: Option<Res<ButtonInput<KeyCode>>>,
+    mut canvases: Query<(&SketchCanvas, &mut SketchDrawing)>,
+) {
+    let alt = [KeyCode::AltLeft, KeyCode::AltRight];
     for (canvas, mut drawing) in &mut canvases {
         if let Some(Some(model)) = models.of(canvas)
             && !drawing.follows(model.figure())
         {
             drawing.follow(model.figure());
+        }
+        if drawing.order() != canvas.order {
+            drawing.set_order(canvas.order);
+        }
+        // An app without a keyboard may set it itself.
+        if let Some(is_free) = keys.as_ref().map(|keys| keys.any_pressed(alt))
+            && drawing.is_free_drag() != is_free
+        {
+            drawing.set_free_drag(is_free);
         }
     }
 }

@@ -6,6 +6,7 @@
 
 pub mod any_order;
 mod cost;
+mod freely;
 mod ink;
 mod plan;
 mod reading;
@@ -18,6 +19,7 @@ use thiserror::Error;
 use crate::figure::Figure;
 use crate::sketch::{Sketch, SketchError};
 use crate::stroke::Stroke;
+pub use freely::{FreeReading, read_freely};
 use ink::{Ink, MAX_STROKES};
 use plan::Plan;
 use reading::Reading;

@@ -11,7 +11,7 @@ use super::settle::{Canvases, look_at_selected};
 use super::{Action, Choice, Mode, Session};
 use crate::figure::StickFigure;
 use crate::inference::{ReadyModel, StickInference};
-use crate::sketch_input::{Ink, SketchCanvas, SketchDrawing};
+use crate::sketch_input::{DrawingOrder, Ink, SketchCanvas, SketchDrawing};
 
 /// The session with its drawings: what carries out what the user asks.
 #[derive(SystemParam)]
@@ -79,7 +79,8 @@ impl Desk<'_, '_> {
             Action::Choose(index) => self.choose(index),
             Action::Switch(mode) => self.switch(mode),
             Action::Undo | Action::Redo => self.step_in_history(action == Action::Undo),
-            Action::Mirror | Action::Clear => self.change_drawing(action),
+            Action::Mirror | Action::SwapSides | Action::Clear => self.change_drawing(action),
+            Action::Order => self.change_order(),
             Action::Ghosts => self.session.shows_ghosts ^= true,
             Action::KeyHere => self.key_here(),
             Action::Export => self.export(),
@@ -132,12 +133,37 @@ impl Desk<'_, '_> {
         let Some(mut drawing) = self.drawing_mut() else {
             return;
         };
-        if action == Action::Clear {
-            drawing.clear();
-        } else if !drawing.mirror() {
-            self.session.status.note("There is nothing to mirror yet");
+        let problem = match action {
+            Action::Clear => {
+                drawing.clear();
+                None
+            }
+            Action::SwapSides => {
+                (!drawing.swap_sides()).then_some("Point at an arm or a leg, then press X")
+            }
+            _ => (!drawing.mirror()).then_some("There is nothing to mirror yet"),
+        };
+        if let Some(problem) = problem {
+            self.session.status.note(problem);
         }
         self.settle();
+    }
+
+    /// From any order to the guided one and back, for all drawings.
+    fn change_order(&mut self) {
+        let order = match self.session.order {
+            DrawingOrder::Any => DrawingOrder::Guided,
+            DrawingOrder::Guided => DrawingOrder::Any,
+        };
+        self.session.order = order;
+        for (mut canvas, mut drawing) in &mut self.canvases {
+            canvas.order = order;
+            drawing.set_order(order);
+        }
+        self.session.status.note(match order {
+            DrawingOrder::Any => "Strokes are read in any order",
+            DrawingOrder::Guided => "Strokes are read in the order that is shown",
+        });
     }
 
     fn edit_timeline(&mut self, action: Action) {
@@ -240,9 +266,5 @@ fn key_of_present(choice: &Choice, ready: &mut ReadyModel) -> Result<(f32, Ink),
     performance.sample_into(time_s, &mut latent);
     let sketch =
         drawing_beside(&mut ready.inference, &latent, beside).map_err(|error| error.to_string())?;
-    let ink = Ink {
-        strokes: vec![],
-        sketch: Some(sketch),
-    };
-    Ok((time_s, ink))
+    Ok((time_s, Ink::of_sketch(sketch)))
 }

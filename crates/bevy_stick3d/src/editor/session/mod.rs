@@ -27,7 +27,7 @@ use super::words;
 use crate::figure::StickFigure;
 use crate::model_asset::StickModel;
 use crate::schedule::Stick3dSystems;
-use crate::sketch_input::{CanvasArea, SketchCanvas, SketchDrawing};
+use crate::sketch_input::{CanvasArea, DrawingOrder, SketchCanvas, SketchDrawing};
 
 /// A figure to choose in the editor.
 #[derive(Clone)]
@@ -97,6 +97,10 @@ pub(super) enum Action {
     Undo,
     Redo,
     Mirror,
+    /// Exchanges the left and the right limb of a pair.
+    SwapSides,
+    /// In any order, or along the path.
+    Order,
     Clear,
     Save,
     Open,
@@ -208,6 +212,8 @@ pub(super) struct Session {
     choices: Vec<Choice>,
     active: usize,
     mode: Mode,
+    /// In which order strokes are expected.
+    order: DrawingOrder,
     /// Whether the bodies of the neighbouring keys are shown.
     pub(super) shows_ghosts: bool,
     /// A motion that is being written.
@@ -237,6 +243,11 @@ impl Session {
     /// What is made.
     pub(super) fn mode(&self) -> Mode {
         self.mode
+    }
+
+    /// In which order strokes are expected.
+    pub(super) fn order(&self) -> DrawingOrder {
+        self.order
     }
 
     /// The one that is drawn.

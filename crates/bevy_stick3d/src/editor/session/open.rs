@@ -46,10 +46,7 @@ pub(super) fn begin_with_sketch(
     choice: &mut Choice,
     first: &FirstSketch,
 ) -> Result<(), SketchError> {
-    let ink = Ink {
-        strokes: vec![],
-        sketch: Some(fitted(choice.figure.figure(), &first.sketch)?),
-    };
+    let ink = Ink::of_sketch(fitted(choice.figure.figure(), &first.sketch)?);
     let selected = choice.document.selected();
     choice.document.scene_mut().set_ink(selected, ink);
     choice.document.commit();

@@ -103,10 +103,7 @@ pub(crate) fn scene_of_clip(
     }
     let mut keys = vec![];
     for (key, points) in clip.keys.iter().zip(on_canvas(figure, &sketches)) {
-        let ink = Ink {
-            strokes: vec![],
-            sketch: Some(Sketch::new(figure, points)?),
-        };
+        let ink = Ink::of_sketch(Sketch::new(figure, points)?);
         keys.push((key.time_s - shift_s, key.easing, ink));
     }
     Ok(Scene::of_keys(keys, clip.settings()))
@@ -187,10 +184,7 @@ mod tests {
     #[test]
     fn what_was_drawn_on_the_canvas_comes_back_as_it_was() {
         let human = Figure::human();
-        let ink = |stretch| Ink {
-            strokes: vec![],
-            sketch: Some(stretched(human, stretch, 400.0)),
-        };
+        let ink = |stretch| Ink::of_sketch(stretched(human, stretch, 400.0));
         let keys = [
             (0.5, Easing::In, ink(0.0)),
             (1.25, Easing::Linear, ink(0.2)),

@@ -225,10 +225,7 @@ pub(crate) mod tests {
     pub(crate) fn drawn(height: f32) -> Ink {
         let human = Figure::human();
         let points = human.template.iter().map(|p| *p * height).collect();
-        Ink {
-            strokes: vec![],
-            sketch: Some(Sketch::new(human, points).unwrap()),
-        }
+        Ink::of_sketch(Sketch::new(human, points).unwrap())
     }
 
     /// Something that a user does to a scene; keys are named by their place.

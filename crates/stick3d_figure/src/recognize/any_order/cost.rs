@@ -10,7 +10,7 @@ use super::search::{Reading, Search, Step};
 use super::ways::Way;
 
 /// What ink costs that no bone explains, per tolerance length of it.
-pub(super) const LEFTOVER_COST: f32 = 60.0;
+pub(in crate::recognize) const LEFTOVER_COST: f32 = 60.0;
 /// What a bone costs where its ink is that of another bone, per tolerance length of it.
 const SHARED_COST: f32 = 45.0;
 /// What a chain costs that is not drawn,
@@ -24,13 +24,13 @@ const CENTER_COST: f32 = 1.5;
 const SIDE_COST: f32 = 0.6;
 const LATER_BONE_COST: f32 = 0.3;
 /// Logarithms by which bones differ from the template's lengths, when longer and when shorter (foreshortened).
-const LONGER_SPREAD: f32 = 0.35;
-const SHORTER_SPREAD: f32 = 0.5;
+pub(in crate::recognize) const LONGER_SPREAD: f32 = 0.35;
+pub(in crate::recognize) const SHORTER_SPREAD: f32 = 0.5;
 /// The same for a head to the middle of its loop, which is drawn in any size.
 const LOOP_SPREAD: f32 = 0.8;
 /// Logarithm by which the two sides of the body differ.
 const SYMMETRY_SPREAD: f32 = 0.6;
-const MAX_LENGTH_COST: f32 = 8.0;
+pub(in crate::recognize) const MAX_LENGTH_COST: f32 = 8.0;
 
 impl Search<'_> {
     /// One more chain on a reading: missing, or on a way, beside its twin's way where there is one. `facing` is asked
@@ -43,6 +43,7 @@ impl Search<'_> {
         facing: f32,
         twin: Option<&Way>,
     ) -> Step {
+        self.count(1);
         let chain = &self.body.chains[index];
         let unit = self.ink.tolerance_length;
         let (mut cost, mut leftover) = (reading.cost, reading.leftover);
@@ -76,6 +77,7 @@ impl Search<'_> {
 
     /// A reading with one more chain.
     pub(super) fn grown(&self, reading: &Reading, step: &Step) -> Reading {
+        self.count(1);
         let chain = &self.body.chains[reading.ways.len()];
         let mut grown = Reading {
             cost: step.cost,

@@ -7,7 +7,7 @@
 //! least ink over with bones as long and directed as those of the template.
 
 mod body;
-mod cost;
+pub(super) mod cost;
 mod lines;
 mod marks;
 mod rest;

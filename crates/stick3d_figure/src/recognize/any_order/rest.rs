@@ -82,7 +82,9 @@ impl Search<'_> {
         let best_of = |index: usize, mark: usize| {
             let rest = self.rough[index * self.places.len() + mark].get_or_init(|| {
                 let mut rest = Rest::MISSING;
-                for way in self.ways_from(index, mark) {
+                let ways = self.ways_from(index, mark);
+                self.count(ways.len());
+                for way in ways {
                     self.ink_of(way, &mut rest.reach);
                     let ink = self.ink_of(way, &mut Samples::NONE.clone()).0;
                     rest.consider(way.cost - LEFTOVER_COST * ink / unit, way.cost);

@@ -1,7 +1,7 @@
 //! The search for the chains of a body on the lines of a drawing: one chain after the other, the trunk first, always
 //! on from the reading that can still become the likeliest (A*).
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::rc::Rc;
@@ -16,11 +16,15 @@ use super::rest::Rest;
 use super::ways::{Way, ways};
 use crate::recognize::ink::Ink;
 
-/// Readings that are looked at closely or made longer before the search is given up; it bounds the work.
-const MAX_EXPANSIONS: usize = 600;
+/// Ways and steps that are looked at before the search is given up; it bounds the work. Each takes about half a
+/// microsecond, and half of all drawings of a figure need ten to twenty thousand.
+pub(super) const MAX_WORK: u32 = 60_000;
 /// When it is given up, so many of the likeliest are completed, each in so many ways.
-const MAX_COMPLETED: usize = 6;
-const BEAM: usize = 6;
+const MAX_COMPLETED: usize = 2;
+const BEAM: usize = 4;
+/// How much a chain that is placed counts when the next reading is chosen: without it many drawings would have no whole
+/// reading before the search is given up.
+const HASTE: f32 = 1.0;
 /// The search ends when all other readings are this much less likely than the best one.
 const SETTLED: f32 = 2.0;
 
@@ -80,8 +84,9 @@ enum Bound {
 // The heap gives its greatest first: that is the one of the least cost.
 impl Ord for Open {
     fn cmp(&self, other: &Self) -> Ordering {
+        let hasty = |open: &Self| open.least_cost - HASTE * open.chains as f32;
         let longer = self.chains.cmp(&other.chains);
-        other.least_cost.total_cmp(&self.least_cost).then(longer)
+        hasty(other).total_cmp(&hasty(self)).then(longer)
     }
 }
 
@@ -114,6 +119,8 @@ pub(super) struct Search<'a> {
     ways: Vec<OnceCell<Vec<Rc<Way>>>>,
     /// The same: what the best of them could do.
     pub(super) rough: Vec<OnceCell<Rest>>,
+    /// How many ways and steps were looked at.
+    work: Cell<u32>,
 }
 
 impl<'a> Search<'a> {
@@ -132,7 +139,18 @@ impl<'a> Search<'a> {
             ways: vec![OnceCell::new(); body.chains.len() * places.len()],
             places,
             head: marks.head.as_ref().map(|_| marks.places.len()),
+            work: Cell::new(0),
         }
+    }
+
+    /// Counts what was looked at.
+    pub(super) fn count(&self, looks: usize) {
+        self.work.set(self.work.get().saturating_add(looks as u32));
+    }
+
+    /// How many ways and steps were looked at so far.
+    pub(super) fn work(&self) -> u32 {
+        self.work.get()
     }
 
     /// Readings of the whole drawing, the likeliest first. None when not even the first chain is there.
@@ -140,11 +158,13 @@ impl<'a> Search<'a> {
         let mut open: BinaryHeap<Open> = self.trunks().into_iter().collect();
         let mut found: Vec<Reading> = Vec::new();
         let mut best = f32::INFINITY;
-        let mut expansions = 0;
         while let Some(next) = open.pop() {
-            if next.least_cost > best + SETTLED || expansions > MAX_EXPANSIONS {
+            if self.work() > MAX_WORK {
                 open.push(next);
                 break;
+            }
+            if next.least_cost > best + SETTLED {
+                continue;
             }
             // A rough bound is made a close one only when it is needed.
             match next.bound {
@@ -152,7 +172,6 @@ impl<'a> Search<'a> {
                     open.push(self.close(self.grown(&next.reading, &step).into(), next.rest));
                 }
                 Bound::Trunk => {
-                    expansions += 1;
                     let rest = self.rest(&next.reading).into();
                     open.push(self.close(next.reading, rest));
                 }
@@ -161,7 +180,6 @@ impl<'a> Search<'a> {
                     found.push((*next.reading).clone());
                 }
                 Bound::Close => {
-                    expansions += 1;
                     let longer = self.longer(&next);
                     open.extend(longer.filter(|longer| longer.least_cost <= best + SETTLED));
                 }
@@ -220,18 +238,22 @@ impl<'a> Search<'a> {
         };
         let mut trunks = Vec::new();
         for start in (0..self.marks.places.len()).map(blank) {
-            for step in self.steps(0, &start, self.ways_from(0, start.start)) {
-                let trunk = self.grown(&start, &step);
-                trunks.push(Open {
-                    least_cost: self.least_cost(&trunk, &self.rough_rest(&trunk)),
-                    chains: 1,
-                    reading: trunk.into(),
-                    bound: Bound::Trunk,
-                    rest: Rc::new([]),
-                });
-            }
+            let steps = self.steps(0, &start, self.ways_from(0, start.start));
+            trunks.extend(steps.iter().map(|step| self.grown(&start, step)));
         }
-        trunks
+        // The likeliest first: for the others there may be no time.
+        trunks.sort_by(|a, b| a.total_cost.total_cmp(&b.total_cost));
+        let in_time = |_: &Reading| self.work() < MAX_WORK / 3;
+        let bounded = trunks.into_iter().take_while(in_time);
+        bounded
+            .map(|trunk| Open {
+                least_cost: self.least_cost(&trunk, &self.rough_rest(&trunk)),
+                chains: 1,
+                reading: trunk.into(),
+                bound: Bound::Trunk,
+                rest: Rc::new([]),
+            })
+            .collect()
     }
 
     /// The likeliest of the unfinished readings, finished.
@@ -296,8 +318,9 @@ impl<'a> Search<'a> {
         self.ways[chain * self.places.len() + mark].get_or_init(|| {
             let unit = self.ink.tolerance_length;
             let chain = &self.body.chains[chain];
-            let ways = ways(chain, mark, &self.places, self.head, &self.lines, unit);
-            ways.into_iter().map(Rc::new).collect()
+            let found = ways(chain, mark, &self.places, self.head, &self.lines, unit);
+            self.count(found.looks);
+            found.ways.into_iter().map(Rc::new).collect()
         })
     }
 

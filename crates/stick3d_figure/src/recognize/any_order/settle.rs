@@ -5,6 +5,7 @@ use glam::Vec2;
 
 use super::body::Chain;
 use super::search::{Reading, Search};
+use crate::edit::distance_to_line;
 
 /// Logarithm by which the two bones of a limb differ from the template's ratio.
 const RATIO_SPREAD: f32 = 0.25;
@@ -59,7 +60,9 @@ fn settle(
     let near: Vec<(Vec2, f32)> = ink
         .iter()
         .copied()
-        .filter(|(p, _)| from_line(*p, before, at).min(from_line(*p, at, after)) < 0.1 * length)
+        .filter(|(p, _)| {
+            distance_to_line(*p, before, at).min(distance_to_line(*p, at, after)) < 0.1 * length
+        })
         .collect();
     let weight: f32 = near.iter().map(|(_, weight)| weight).sum();
     let sigma = STRAIGHTNESS * unit + BOW * length;
@@ -69,8 +72,8 @@ fn settle(
             .iter()
             .map(|(p, weight)| {
                 weight
-                    * from_line(*p, before, place)
-                        .min(from_line(*p, place, after))
+                    * distance_to_line(*p, before, place)
+                        .min(distance_to_line(*p, place, after))
                         .powi(2)
             })
             .sum();
@@ -83,10 +86,4 @@ fn settle(
         .map(|place| (cost(place), place))
         .min_by(|a, b| a.0.total_cmp(&b.0))
         .map_or(at, |(_, place)| place)
-}
-
-fn from_line(p: Vec2, a: Vec2, b: Vec2) -> f32 {
-    let line = b - a;
-    let along = (p - a).dot(line) / line.length_squared().max(f32::MIN_POSITIVE);
-    p.distance(a + line * along.clamp(0.0, 1.0))
 }

@@ -31,6 +31,12 @@ pub(super) struct Way {
     pub(super) cost: f32,
 }
 
+/// The ways that were found, and how many were looked at.
+pub(super) struct Ways {
+    pub(super) ways: Vec<Way>,
+    pub(super) looks: usize,
+}
+
 /// All likely ways of a chain from a mark: those of all its bones first, then those of its first bones alone.
 pub(super) fn ways(
     chain: &Chain,
@@ -39,8 +45,9 @@ pub(super) fn ways(
     head: Option<usize>,
     lines: &Lines,
     unit: f32,
-) -> Vec<Way> {
+) -> Ways {
     let count = chain.lengths.len();
+    let mut looks = 0;
     let mut by_bones: Vec<Vec<Way>> = vec![Vec::new(); count + 1];
     by_bones[0].push(Way {
         marks: vec![from as u16],
@@ -60,6 +67,7 @@ pub(super) fn ways(
                     }
                     let lengths = &chain.lengths[drawn..drawn + bones];
                     if let Some(longer) = extended(way, next, lengths, places, lines) {
+                        looks += 1;
                         after[bones - 1].push(longer);
                     }
                 }
@@ -70,7 +78,7 @@ pub(super) fn ways(
     let begun = if chain.branches { 0..0 } else { 1..count };
     let mut ways = std::mem::take(&mut by_bones[count]);
     ways.extend(by_bones[begun].iter_mut().flat_map(std::mem::take));
-    ways
+    Ways { ways, looks }
 }
 
 fn keep_likely(ways: &mut Vec<Way>, unit: f32) {
