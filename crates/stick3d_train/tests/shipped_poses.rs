@@ -344,6 +344,30 @@ fn sampled_poses_keep_limits_and_do_not_run_into_themselves() {
 }
 
 #[test]
+fn perturbed_poses_are_near_their_poses_and_keep_the_limits() {
+    for body in bodies() {
+        let mut sampler = PoseSampler::new(&body.rig, &body.controls, &body.library, 12);
+        let mut moved = 0;
+        for pose in &body.library.poses {
+            let perturbed = sampler.perturbed(&pose.values, 0.3);
+            assert_eq!(perturbed.lift_m, pose.values.lift_m, "{}", pose.name);
+            body.controls.check(&perturbed, &pose.name).unwrap();
+            let pairs = perturbed.degrees.iter().zip(&pose.values.degrees);
+            let list = body.controls.list().iter();
+            for ((after, before), control) in pairs.zip(list) {
+                // Five standard deviations.
+                let most = 5.0 * 0.3 * control.spread_deg + 1e-3;
+                assert!((after - before).abs() <= most, "{}", control.name);
+            }
+            moved += usize::from(perturbed != pose.values);
+            let still = sampler.perturbed(&pose.values, 0.0);
+            assert_eq!(still, pose.values, "{}", pose.name);
+        }
+        assert!(10 * moved > 9 * body.library.poses.len(), "{moved}");
+    }
+}
+
+#[test]
 fn a_clip_or_a_moment_that_is_not_there_is_named() {
     let message = |clip: &str| {
         let text = format!(r#"(rig: "horse", poses: [(name: "odd", clip: Some({clip}))])"#);

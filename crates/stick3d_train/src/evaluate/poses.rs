@@ -43,3 +43,31 @@ pub fn broad_poses<'a>(rig: &Rig, controls: &'a Controls, seed: u64) -> PoseStre
         sampler.sample(SampleKind::Free)
     }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pose::ShippedBody;
+
+    #[test]
+    fn held_out_poses_come_as_they_are_and_then_perturbed() {
+        let rig = Rig::from_glb(include_bytes!("../../../../assets/rigs/human.glb")).unwrap();
+        let human = ShippedBody::named("human").unwrap();
+        let controls = Controls::from_ron(human.controls, &rig).unwrap();
+        let library = PoseLibrary::from_ron(human.poses, &controls).unwrap();
+        let some = PoseLibrary {
+            poses: library.poses[..3].to_vec(),
+        };
+        let drawn: Vec<_> = natural_poses(&rig, &controls, &some, 1).take(15).collect();
+        for (number, pose) in drawn.iter().enumerate() {
+            let original = controls.pose(&some.poses[number % 3].values);
+            let as_it_is = number / 3 % (1 + PERTURBED) == 0;
+            assert_eq!(*pose == original, as_it_is, "{number}");
+        }
+        let none = PoseLibrary::default();
+        let mut natural = natural_poses(&rig, &controls, &none, 1);
+        assert!(natural.next().is_none());
+        let mut broad = broad_poses(&rig, &controls, 1);
+        assert!(broad.next() != broad.next());
+    }
+}

@@ -16,8 +16,9 @@ use crate::render::{
 
 /// The longer and the shorter side of a picture, pixels.
 const SIDES_PX: [u32; 2] = [240, 200];
-/// Space between the pictures of a strip, pixels.
-const GAP: u32 = 4;
+/// Space between the pictures of a strip, and at both its ends, pixels.
+const GAP: u32 = 3;
+const END: u32 = 9;
 /// How many alternatives there are pictures of, beside the first answer.
 const OTHERS: usize = 3;
 /// Where views are from: yaw and pitch, radians. Drawings are from the front.
@@ -117,30 +118,33 @@ fn strip(model: &Model, sketch: &Sketch, answers: &[Answer], with_others: bool) 
     };
 
     let pictures = if with_others { 4 } else { 3 };
-    let mut strip = RgbaImage::from_pixel(
-        pictures * (width + GAP) - GAP,
-        height,
-        Rgba([255, 255, 255, 255]),
-    );
+    let left = |picture: u32| END + picture * (width + GAP);
+    let mut strip = RgbaImage::from_pixel(left(pictures) - GAP + END, height, Rgba([255; 4]));
     let mut put = |picture: &RgbaImage, x: u32, y: u32| {
         imageops::replace(&mut strip, picture, i64::from(x), i64::from(y));
     };
-    put(&drawing(model.figure(), sketch, [width, height]), 0, 0);
+    put(
+        &drawing(model.figure(), sketch, [width, height]),
+        left(0),
+        0,
+    );
     if let (Some(first), Some(front), Some(turned)) = (shown.first(), &front, turned.first()) {
-        for (column, camera) in [(1, front), (2, turned)] {
-            let mut picture = picture(first, camera, [width, height]);
-            write(&mut picture, &percent(1, first));
-            put(&picture, column * (width + GAP), 0);
-        }
+        put(&picture(first, front, [width, height]), left(1), 0);
+        let mut picture = picture(first, turned, [width, height]);
+        write(&mut picture, &percent(1, first));
+        put(&picture, left(2), 0);
     }
     // The others share the place of one picture, two in a row.
     let small = [(width - GAP) / 2, (height - GAP) / 2];
-    for ((at, answer), camera) in (0..).zip(shown).zip(&turned).skip(1) {
+    for ((rank, answer), camera) in (1..).zip(shown).zip(&turned).skip(1) {
         let mut picture = picture(answer, camera, small);
-        write(&mut picture, &percent(at + 1, answer));
-        let (column, row) = ((at - 1) % 2, (at - 1) / 2);
-        let left = 3 * (width + GAP) + column * (small[0] + GAP);
-        put(&picture, left, row * (small[1] + GAP));
+        write(&mut picture, &percent(rank, answer));
+        let (column, row) = ((rank - 2) % 2, (rank - 2) / 2);
+        put(
+            &picture,
+            left(3) + column * (small[0] + GAP),
+            row * (small[1] + GAP),
+        );
     }
     strip
 }
@@ -186,11 +190,10 @@ fn percent(rank: u32, answer: &Answer) -> String {
     format!("{rank}: {:.0} %", 100.0 * answer.probability)
 }
 
-/// Writes into the lower right corner of a picture.
+/// Writes into the upper right corner of a picture, away from feet and shadows.
 fn write(picture: &mut RgbaImage, text: &str) {
     let x = picture.width().saturating_sub(text_width_px(text, 1) + 4);
-    let y = picture.height().saturating_sub(12);
-    draw_text(picture, (x, y), 1, INK, text);
+    draw_text(picture, (x, 5), 1, INK, text);
 }
 
 #[cfg(test)]
@@ -199,35 +202,63 @@ mod tests {
 
     use super::*;
 
+    fn horse() -> Model {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/models/horse.stick3d");
+        Model::load(&path).unwrap()
+    }
+
+    fn as_tall(figure: &Figure, tall: f32) -> Sketch {
+        let points = figure.template.iter().map(|p| *p * Vec2::new(1.0, tall));
+        Sketch::new(figure, points.collect()).unwrap()
+    }
+
+    /// How many pixels in the middle of a place of a picture are darker than any background.
+    fn shown_in(picture: &RgbaImage, [left, top]: [u32; 2], [width, height]: [u32; 2]) -> usize {
+        (left + width / 4..left + 3 * width / 4)
+            .flat_map(|x| (top + height / 4..top + 3 * height / 4).map(move |y| (x, y)))
+            .filter(|(x, y)| {
+                let [r, g, b, _] = picture.get_pixel(*x, *y).0;
+                r.max(g).max(b) < 170
+            })
+            .count()
+    }
+
+    #[test]
+    fn three_more_answers_share_the_place_of_one() {
+        let model = horse();
+        let sketch = as_tall(model.figure(), 1.0);
+        let four: Vec<Answer> = [1.0, 0.8, 1.3, 0.6, 1.1]
+            .map(|tall| as_tall(model.figure(), tall))
+            .iter()
+            .flat_map(|sketch| answers(&model, sketch).unwrap().into_iter().take(1))
+            .collect();
+        let [width, height] = size_px(model.figure());
+        let strip = strip(&model, &sketch, &four, true);
+        let left = END + 3 * (width + GAP);
+        assert_eq!(strip.width(), left + width + END);
+        let small = [(width - GAP) / 2, (height - GAP) / 2];
+        let at = |column, row| [left + column * (small[0] + GAP), row * (small[1] + GAP)];
+        let shown = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)].map(|at| shown_in(&strip, at, small));
+        assert!(shown[..3].iter().all(|pixels| *pixels > 50), "{shown:?}");
+        assert_eq!(shown[3], 0, "no more than three");
+    }
+
     #[test]
     fn a_sheet_shows_drawing_and_body_of_every_sketch() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/models/horse.stick3d");
-        let model = Model::load(&path).unwrap();
+        let model = horse();
         let figure = model.figure();
         let sketches: Vec<_> = [1.0, 0.9, 1.1]
-            .map(|tall| {
-                let points = figure.template.iter().map(|p| *p * Vec2::new(1.0, tall));
-                let sketch = Sketch::new(figure, points.collect()).unwrap();
-                (format!("horse {tall}"), sketch)
-            })
+            .map(|tall| (format!("horse {tall}"), as_tall(figure, tall)))
             .into();
         let sheet = answer_sheet(&model, &sketches).unwrap();
         let [width, height] = size_px(figure);
         assert!(width > height, "a horse is longer than high");
         assert!(sheet.width() >= 3 * 3 * width && sheet.height() > height);
-        // Away from its background, every picture shows something.
         let strip = sheet.width() / 3;
-        for column in 0..3 {
-            for picture in 0..3 {
-                let left = column * strip + picture * (width + GAP) + 2 * GAP;
-                let middle = (left + width / 4..left + width / 2)
-                    .flat_map(|x| (height / 4..3 * height / 4).map(move |y| (x, y)))
-                    .filter(|(x, y)| {
-                        let [r, g, b, _] = sheet.get_pixel(*x, *y).0;
-                        r.max(g).max(b) < 170
-                    });
-                assert!(middle.count() > 100, "{column} {picture}");
-            }
+        for (column, picture) in (0..3).flat_map(|column| (0..3).map(move |p| (column, p))) {
+            let left = column * strip + END + picture * (width + GAP);
+            let shown = shown_in(&sheet, [left, 0], [width, height]);
+            assert!(shown > 100, "{column} {picture}: {shown}");
         }
         assert!(matches!(
             answer_sheet(&model, &[]),

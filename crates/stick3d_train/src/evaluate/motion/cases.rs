@@ -5,7 +5,7 @@ use stick3d_figure::sketch::Sketch;
 use stick3d_model::latent::{Easing, LatentKey};
 use stick3d_model::{Inference, Model};
 
-use crate::dataset::{drawn, posed};
+use crate::dataset::{centre, drawn};
 use crate::evaluate::EvalError;
 use crate::rig::{Clip, Pose, Rig};
 
@@ -146,6 +146,8 @@ pub(super) struct TrueFrame {
     pub(super) time_s: f32,
     pub(super) mesh: Vec<Vec3>,
     pub(super) joints: Vec<Vec3>,
+    /// How high its lowest vertex is above the ground, metres.
+    pub(super) lift_m: f32,
     /// Whether it is a key.
     pub(super) is_key: bool,
 }
@@ -161,13 +163,17 @@ impl DrawnMotion {
         let figure = model.figure();
         let frame = |time_s: f32, pose: &Pose, is_key: bool| {
             let mut mesh = vec![];
-            let mut joints = posed(rig, model.regressor(), figure.root, pose, &mut mesh);
+            rig.skin(pose, &mut mesh);
+            let lowest_m = mesh.iter().map(|v| v.y).fold(f32::INFINITY, f32::min);
+            let mut joints = centre(model.regressor(), figure.root, &mut mesh);
             let points = mesh.iter_mut().chain(&mut joints);
             points.for_each(|point| *point = turn * *point);
             TrueFrame {
                 time_s,
                 mesh,
                 joints,
+                // Between poses on the ground, turned bones may lead below it.
+                lift_m: lowest_m.max(0.0),
                 is_key,
             }
         };

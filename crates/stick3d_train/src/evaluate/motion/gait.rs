@@ -74,7 +74,7 @@ pub(super) fn measure(
     })
 }
 
-/// The skating of a true motion over the ground that its lowest vertex touches in every frame.
+/// The skating of a true motion.
 fn of_truth(
     drawn: &DrawnMotion,
     feet: &[usize],
@@ -85,7 +85,8 @@ fn of_truth(
         .frames
         .iter()
         .map(|frame| {
-            let ground_m = frame.mesh.iter().map(|v| v.y).fold(f32::INFINITY, f32::min);
+            let lowest_m = frame.mesh.iter().map(|v| v.y).fold(f32::INFINITY, f32::min);
+            let ground_m = lowest_m - frame.lift_m;
             let raised = |foot: &usize| frame.joints[*foot] - Vec3::Y * ground_m;
             feet.iter().map(raised).collect()
         })
