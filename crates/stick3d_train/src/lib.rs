@@ -10,6 +10,7 @@ pub mod format;
 pub mod guess;
 pub mod landmark;
 pub mod meshes;
+pub mod paper;
 pub mod placement;
 pub mod pose;
 pub mod render;
