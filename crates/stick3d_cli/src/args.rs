@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use stick3d_train::landmark::Preset;
 
+use crate::paper::PaperArguments;
+
 const EXIT_CODES: &str = "Exit codes:
   0  done
   1  something else failed (the message says what)
@@ -42,7 +44,9 @@ pub(crate) enum Command {
                       stick3d train --rig fox.glb --figure fox.ron --out fox.stick3d\n\n\
                       Example, meshes without a rig:\n  \
                       stick3d figure init --mesh scape/mesh000.ply --preset scape --out scape.ron\n  \
-                      stick3d train --meshes scape --figure scape.ron --out scape.stick3d"
+                      stick3d train --meshes scape --figure scape.ron --out scape.stick3d\n\n\
+                      Example, the paper's own networks and data:\n  \
+                      stick3d train --paper --out paper.stick3d --work-dir out/paper"
     )]
     Train(TrainArguments),
     /// Measures a model on poses it never saw
@@ -275,6 +279,9 @@ pub(crate) struct TrainArguments {
     /// A tenth of the bodies and of the epochs: to see that everything works
     #[arg(long)]
     pub(crate) quick: bool,
+    /// Or the paper's own system
+    #[command(flatten)]
+    pub(crate) paper: PaperArguments,
 }
 
 #[derive(Debug, Args)]

@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use serde::Serialize;
 use stick3d_model::Model;
 use stick3d_train::evaluate::{self, Drawn, EvalConfig, EvalInput, Report};
-use stick3d_train::rig::Pose;
 use stick3d_train::training::Progress;
 
 use crate::args::EvalArguments;
@@ -72,7 +71,7 @@ pub(crate) fn measure(
 }
 
 /// At most `count` of the poses, evenly spread over the library, which is ordered by subject.
-fn spread(poses: Vec<Pose>, count: usize) -> Vec<Pose> {
+pub(crate) fn spread<T>(poses: Vec<T>, count: usize) -> Vec<T> {
     let len = poses.len();
     let picked = |i: &usize| len <= count || (i * count) % len < count;
     poses

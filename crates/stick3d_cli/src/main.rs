@@ -15,6 +15,7 @@ mod failure;
 mod figure;
 mod inputs;
 mod mesh_set;
+mod paper;
 mod pictures;
 mod pose;
 mod progress;

@@ -236,7 +236,7 @@ fn the_plain_autoencoder_reconstructs_and_has_no_variance() {
     let [seen, unseen] = [&samples.train[..21], &samples.pose]
         .map(|part| measure(&trained.model, &SET, part).unwrap());
     let [seen_cm, unseen_cm] = [seen, unseen].map(|m| m.mesh.unwrap().metrics.vertex_mean_cm);
-    assert!(seen_cm < 12.0, "{seen_cm}");
+    assert!(seen_cm < 20.0, "{seen_cm}");
     assert!(unseen_cm > seen_cm, "{unseen_cm} {seen_cm}");
     let errors = unseen.sketch;
     let ratio = errors.squared_mean / errors.metrics.mse_normalised;
