@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand};
 use stick3d_train::landmark::Preset;
 
 use crate::paper::PaperArguments;
+use crate::reproduce::ReproduceArguments;
 
 const EXIT_CODES: &str = "Exit codes:
   0  done
@@ -55,6 +56,13 @@ pub(crate) enum Command {
                               stick3d eval --model fox.stick3d --rig fox.glb"
     )]
     Eval(EvalArguments),
+    /// Reproduces the paper's tables and figures: trains its networks, measures them, writes a report
+    #[command(
+        after_help = "Examples:\n  stick3d reproduce --quick --out out/quick\n  \
+                      stick3d reproduce --meshes scape --figure scape --out out/scape\n\n\
+                      A run that was stopped goes on where it was."
+    )]
+    Reproduce(ReproduceArguments),
     /// Makes figure files: which joints a body has and how it is drawn
     #[command(
         subcommand,

@@ -19,6 +19,7 @@ mod paper;
 mod pictures;
 mod pose;
 mod progress;
+mod reproduce;
 mod train;
 
 use std::process::ExitCode;
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
         Command::Animate(arguments) => animate::run(&arguments),
         Command::Train(arguments) => train::run(&arguments),
         Command::Eval(arguments) => eval::run(&arguments),
+        Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Figure(command) => figure::run(&command),
         Command::Bake(command) => bake::run(&command),
     };

@@ -14,6 +14,7 @@ pub mod paper;
 pub mod placement;
 pub mod pose;
 pub mod render;
+pub mod reproduce;
 pub mod rig;
 pub mod size;
 pub mod training;

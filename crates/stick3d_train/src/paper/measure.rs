@@ -26,9 +26,9 @@ pub struct Errors {
 /// A model's errors both ways.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// From meshes; `None` where the model reads something else.
-    pub mesh: Option<Errors>,
-    /// From sketches.
+    /// From meshes, through Encoder3D: the paper's "reconstruction".
+    pub mesh: Errors,
+    /// From sketches, through Encoder2D: what the system is for.
     pub sketch: Errors,
 }
 
@@ -83,29 +83,29 @@ pub fn measure(model: &Model, set: &PaperSet, samples: &[Sample]) -> Result<Meas
     model.require_topology(&set.topology_hash())?;
     let inference = Inference::new(model)?;
     Ok(Measured {
-        mesh: Some(errors(set, samples, &inference, |inference, sample| {
+        mesh: errors(set, samples, &inference, |inference, sample| {
             reconstructed(model, inference, set, sample)
-        })?),
+        })?,
         sketch: errors(set, samples, &inference, |inference, sample| {
             sketched(inference, set, sample)
         })?,
     })
 }
 
-/// The errors of meshes that `find` makes of samples, several at once.
-pub(crate) fn errors(
+/// The errors of meshes that `find` makes of samples, several at once, each with networks of its own.
+pub(crate) fn errors<N: Clone + Sync>(
     set: &PaperSet,
     samples: &[Sample],
-    inference: &Inference,
-    find: impl Fn(&mut Inference, Sample) -> Result<Vec<Vec3>, EvalError> + Sync,
+    networks: &N,
+    find: impl Fn(&mut N, Sample) -> Result<Vec<Vec3>, EvalError> + Sync,
 ) -> Result<Errors, EvalError> {
     // Networks are large: one copy for each core.
     let share = samples.len().div_ceil(rayon::current_num_threads()).max(1);
     let found: Vec<Vec<Vec<Vec3>>> = samples
         .par_chunks(share)
         .map(|samples| {
-            let mut inference = inference.clone();
-            let found = samples.iter().map(|sample| find(&mut inference, *sample));
+            let mut networks = networks.clone();
+            let found = samples.iter().map(|sample| find(&mut networks, *sample));
             found.collect::<Result<_, _>>()
         })
         .collect::<Result<_, EvalError>>()?;

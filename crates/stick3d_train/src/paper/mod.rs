@@ -22,6 +22,7 @@ mod set;
 
 pub use config::{PaperConfig, PaperKind};
 pub use measure::{Errors, Measured, measure, reconstructed, sketched};
+pub(crate) use measure::{decoded, errors};
 pub use run::{PaperTrained, train_paper};
 pub use set::{KeyMesh, PaperSet, Sample, Samples, Split};
 

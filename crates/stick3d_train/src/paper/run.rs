@@ -334,7 +334,7 @@ impl<'a> Run<'a> {
         };
         let left = squared / 1e3 / self.variance();
         let verdict = if left > COLLAPSED {
-            ": it has collapsed to little more than the mean mesh; lower the learning rate or the first log-variance"
+            ": little more than the mean mesh is learnt; train longer, or lower the learning rate or the first log-variance"
         } else {
             ""
         };

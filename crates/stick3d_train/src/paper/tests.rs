@@ -235,7 +235,7 @@ fn the_plain_autoencoder_reconstructs_and_has_no_variance() {
     let samples = samples();
     let [seen, unseen] = [&samples.train[..21], &samples.pose]
         .map(|part| measure(&trained.model, &SET, part).unwrap());
-    let [seen_cm, unseen_cm] = [seen, unseen].map(|m| m.mesh.unwrap().metrics.vertex_mean_cm);
+    let [seen_cm, unseen_cm] = [seen, unseen].map(|m| m.mesh.metrics.vertex_mean_cm);
     assert!(seen_cm < 20.0, "{seen_cm}");
     assert!(unseen_cm > seen_cm, "{unseen_cm} {seen_cm}");
     let errors = unseen.sketch;
