@@ -6,6 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use stick3d_figure::figure::Figure;
 use stick3d_figure::names::nearest;
+use stick3d_model::Model;
 use stick3d_train::pose::SHIPPED;
 use stick3d_train::reproduce::{self, ReproduceConfig, ReproduceError, Subject};
 
@@ -23,6 +24,7 @@ const PUBLISHED: (f64, usize) = (1.0, 512);
 
 #[derive(Debug, Args)]
 #[command(mut_arg("meshes", |meshes| meshes.requires("figure")))]
+#[command(mut_arg("rig", |rig| rig.requires("figure")))]
 pub(crate) struct ReproduceArguments {
     /// Where the report goes; models that are there already are not trained again
     #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
@@ -43,13 +45,16 @@ pub(crate) struct ReproduceArguments {
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Only these of the shipped bodies; all of them without it
-    #[arg(long, value_name = "NAME", conflicts_with = "meshes")]
-    pub(crate) body: Vec<String>,
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["meshes", "rig"])]
+    pub(crate) only: Vec<String>,
+    /// Or a rig of one's own
+    #[command(flatten)]
+    pub(crate) body: BodyFiles,
     /// Or meshes of one's own
     #[command(flatten)]
     pub(crate) set: MeshFiles,
-    /// The figure file of the meshes, or a preset: scape, tosca-horse
-    #[arg(long, value_name = "FILE|PRESET", requires = "meshes")]
+    /// The figure file of the meshes or the rig, or for meshes a preset: scape, tosca-horse
+    #[arg(long, value_name = "FILE|PRESET")]
     pub(crate) figure: Option<PathBuf>,
 }
 
@@ -105,17 +110,20 @@ fn subjects(arguments: &ReproduceArguments) -> Outcome<Vec<Subject>> {
     if let (Some(folder), Some(figure)) = (&arguments.set.meshes, &arguments.figure) {
         let (keys, said) = Keys::of_meshes(folder, &arguments.set, figure, arguments.seed)?;
         println!("{said}");
-        return Ok(vec![Subject {
-            name: keys.set.figure.name.clone(),
-            published: keys.is_many(),
-            set: keys.set,
-            held_out: keys.held_out,
-            shipped: None,
-        }]);
+        return Ok(vec![subject(keys, None)]);
+    }
+    if let (Some(_), Some(figure)) = (&arguments.body.rig, &arguments.figure) {
+        let figure = inputs::figure(figure)?;
+        let corpus = Corpus::read(&arguments.body, Some(&figure))?;
+        corpus.said.iter().for_each(|line| println!("{line}"));
+        return Ok(vec![subject(
+            Keys::of_rig(&corpus, &figure, arguments.seed)?,
+            None,
+        )]);
     }
     let known = || SHIPPED.iter().map(|body| body.name);
     if let Some(unknown) = arguments
-        .body
+        .only
         .iter()
         .find(|name| !known().any(|k| k == **name))
     {
@@ -124,7 +132,7 @@ fn subjects(arguments: &ReproduceArguments) -> Outcome<Vec<Subject>> {
             nearest(unknown, known()).unwrap_or_default()
         )));
     }
-    let wanted = |name: &str| arguments.body.is_empty() || arguments.body.iter().any(|b| b == name);
+    let wanted = |name: &str| arguments.only.is_empty() || arguments.only.iter().any(|b| b == name);
     Figure::shipped()
         .into_iter()
         .filter(|figure| wanted(&figure.name))
@@ -143,11 +151,15 @@ fn shipped(figure: &Figure, seed: u64) -> Outcome<Subject> {
     };
     let corpus = Corpus::read(&files, Some(figure))?;
     let keys = Keys::of_rig(&corpus, figure, seed)?;
-    Ok(Subject {
-        name: name.clone(),
+    Ok(subject(keys, Some(inputs::embedded_model(name)?)))
+}
+
+fn subject(keys: Keys, shipped: Option<Model>) -> Subject {
+    Subject {
+        name: keys.set.figure.name.clone(),
         published: keys.is_many(),
         set: keys.set,
         held_out: keys.held_out,
-        shipped: Some(inputs::embedded_model(name)?),
-    })
+        shipped,
+    }
 }

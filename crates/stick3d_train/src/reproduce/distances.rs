@@ -140,7 +140,7 @@ pub(super) fn of_sketch(
     decoded(inference, &latent)
 }
 
-/// The distance that has the last colour: all but one in a hundred vertices of the paper's bodies are closer.
+/// The distance that has the last colour: all but one in twenty vertices of the paper's bodies are closer.
 fn top_m(found: &[Found]) -> f32 {
     let mut distances: Vec<f32> = found
         .iter()
@@ -150,7 +150,7 @@ fn top_m(found: &[Found]) -> f32 {
     if distances.is_empty() {
         return 1.0;
     }
-    let index = (distances.len() - 1) * 99 / 100;
+    let index = (distances.len() - 1) * 95 / 100;
     let (_, top, _) = distances.select_nth_unstable_by(index, f32::total_cmp);
     top.max(1e-3)
 }

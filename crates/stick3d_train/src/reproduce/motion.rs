@@ -90,7 +90,7 @@ fn frames(
     Ok(rows)
 }
 
-/// Two trained poses facing the viewer: the first, and the one that is as far from it as half of the others are.
+/// Two trained poses facing the viewer: the first, and the one that is farther from it than three of four of the others.
 fn keys(prepared: &Prepared<'_>) -> Option<[Sample; 2]> {
     let set = &prepared.subject.set;
     let turn = set.turns.len() / 2;
@@ -106,6 +106,6 @@ fn keys(prepared: &Prepared<'_>) -> Option<[Sample; 2]> {
     };
     let mut others = meshes.split_off(1);
     others.sort_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-    let second = *others.get(others.len() / 2)?;
+    let second = *others.get(others.len() * 3 / 4)?;
     Some([first, second].map(|mesh| Sample { mesh, turn }))
 }
