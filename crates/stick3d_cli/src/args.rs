@@ -5,6 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use stick3d_train::landmark::Preset;
 
+use crate::paper::PaperArguments;
+use crate::reproduce::ReproduceArguments;
+
 const EXIT_CODES: &str = "Exit codes:
   0  done
   1  something else failed (the message says what)
@@ -42,7 +45,9 @@ pub(crate) enum Command {
                       stick3d train --rig fox.glb --figure fox.ron --out fox.stick3d\n\n\
                       Example, meshes without a rig:\n  \
                       stick3d figure init --mesh scape/mesh000.ply --preset scape --out scape.ron\n  \
-                      stick3d train --meshes scape --figure scape.ron --out scape.stick3d"
+                      stick3d train --meshes scape --figure scape.ron --out scape.stick3d\n\n\
+                      Example, the paper's own networks and data:\n  \
+                      stick3d train --paper --out paper.stick3d --work-dir out/paper"
     )]
     Train(TrainArguments),
     /// Measures a model on poses it never saw
@@ -52,6 +57,13 @@ pub(crate) enum Command {
                               stick3d eval --sheet answers.png --sketches assets/sketches"
     )]
     Eval(EvalArguments),
+    /// Reproduces the paper's tables and figures: trains its networks, measures them, writes a report
+    #[command(
+        after_help = "Examples:\n  stick3d reproduce --quick --out out/quick\n  \
+                      stick3d reproduce --meshes scape --figure scape --out out/scape\n\n\
+                      A run that was stopped goes on where it was."
+    )]
+    Reproduce(ReproduceArguments),
     /// Makes figure files: which joints a body has and how it is drawn
     #[command(
         subcommand,
@@ -288,6 +300,9 @@ pub(crate) struct TrainArguments {
     /// A tenth of the bodies and of the epochs: to see that everything works
     #[arg(long)]
     pub(crate) quick: bool,
+    /// Or the paper's own system
+    #[command(flatten)]
+    pub(crate) paper: PaperArguments,
 }
 
 #[derive(Debug, Args)]

@@ -89,7 +89,7 @@ pub(crate) fn test_poses<'a>(
 }
 
 /// At most `count` of the poses, evenly spread over the library, which is ordered by subject.
-fn spread(poses: Vec<Pose>, count: usize) -> Vec<Pose> {
+pub(crate) fn spread<T>(poses: Vec<T>, count: usize) -> Vec<T> {
     let len = poses.len();
     let picked = |i: &usize| len <= count || (i * count) % len < count;
     poses

@@ -16,9 +16,11 @@ mod failure;
 mod figure;
 mod inputs;
 mod mesh_set;
+mod paper;
 mod pictures;
 mod pose;
 mod progress;
+mod reproduce;
 mod train;
 
 use std::process::ExitCode;
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
         Command::Animate(arguments) => animate::run(&arguments),
         Command::Train(arguments) => train::run(&arguments),
         Command::Eval(arguments) => eval::run(&arguments),
+        Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Figure(command) => figure::run(&command),
         Command::Bake(command) => bake::run(&command),
     };

@@ -6,17 +6,19 @@ use std::time::Instant;
 use stick3d_figure::figure::Figure;
 use stick3d_model::Model;
 use stick3d_train::evaluate::{EvalConfig, EvalError, Report, evaluate_meshes};
+use stick3d_train::landmark::Preset;
 use stick3d_train::meshes::{MeshSet, MeshSetOptions, UpAxis};
 use stick3d_train::placement::Placement;
 use stick3d_train::training::{self, MeshTrainInput, TrainConfig};
 
 use crate::args::{MeshFiles, TrainArguments, Up};
 use crate::failure::{Failure, Outcome};
+use crate::inputs;
 use crate::progress::Bar;
 use crate::train::{finish, make_work_folder, quicker, say_when};
 
 /// Which share of the meshes is kept out of training, for the evaluation.
-const HELD_OUT: f32 = 0.1;
+pub(crate) const HELD_OUT: f32 = 0.1;
 
 /// Below this share of the template's height over width, the meshes probably lie on their side.
 const LYING: f32 = 0.4;
@@ -80,14 +82,42 @@ fn measure(model: &Model, set: &MeshSet, config: &EvalConfig, bar: &Bar) -> Outc
     })
 }
 
-/// Reads a set and brings it to the figure's size and heading; also what was done to it, for people.
-fn read(folder: &Path, files: &MeshFiles, figure: &Figure) -> Outcome<(MeshSet, String)> {
-    let options = MeshSetOptions {
+/// The figure of a file; or, where there is no such file, that of a preset, its joints found on the pilot of a folder.
+pub(crate) fn figure(folder: &Path, files: &MeshFiles, name: &Path) -> Outcome<Figure> {
+    let preset = Preset::ALL
+        .into_iter()
+        .find(|preset| name == Path::new(preset.name()));
+    match preset.filter(|_| !name.exists()) {
+        None => inputs::figure(name),
+        Some(preset) => {
+            let pilot = MeshSet::read(folder, &options(files))
+                .map_err(Failure::input)?
+                .pilot_mesh();
+            preset.figure(&pilot).map_err(|error| {
+                Failure::input(error).context(format!(
+                    "cannot find joints on the meshes of {}",
+                    folder.display()
+                ))
+            })
+        }
+    }
+}
+
+fn options(files: &MeshFiles) -> MeshSetOptions {
+    MeshSetOptions {
         pilot: files.pilot.clone(),
         skip_mismatched: files.skip_mismatched,
         up: files.up.into(),
-    };
-    let mut set = MeshSet::read(folder, &options).map_err(Failure::input)?;
+    }
+}
+
+/// Reads a set and brings it to the figure's size and heading; also what was done to it, for people.
+pub(crate) fn read(
+    folder: &Path,
+    files: &MeshFiles,
+    figure: &Figure,
+) -> Outcome<(MeshSet, String)> {
+    let mut set = MeshSet::read(folder, &options(files)).map_err(Failure::input)?;
     let placement = set.place(figure, files.scale).map_err(Failure::input)?;
     let said = report(&set, &placement, files.scale);
     Ok((set, said))

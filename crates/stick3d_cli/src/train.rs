@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use anyhow::Context as _;
+use serde::Serialize;
 use stick3d_figure::figure::Figure;
 use stick3d_model::Model;
 use stick3d_train::evaluate::{EvalConfig, Report};
@@ -12,7 +13,7 @@ use crate::args::TrainArguments;
 use crate::corpus::Corpus;
 use crate::failure::{Failure, Outcome};
 use crate::progress::Bar;
-use crate::{eval, inputs, mesh_set};
+use crate::{eval, inputs, mesh_set, paper};
 
 /// What `--quick` divides bodies and epochs by.
 const QUICK: usize = 10;
@@ -20,6 +21,9 @@ const QUICK: usize = 10;
 /// Runs `stick3d train`.
 pub(crate) fn run(arguments: &TrainArguments) -> Outcome {
     let start = Instant::now();
+    if arguments.paper.paper {
+        return paper::train(arguments);
+    }
     let figure = match &arguments.figure {
         Some(path) => inputs::figure(path)?,
         None => Figure::human().clone(),
@@ -94,7 +98,7 @@ pub(crate) fn say_when(arguments: &TrainArguments, start: Instant) {
 }
 
 /// The model as it comes back from its file, where numbers are rounded: what is measured is what ships.
-fn as_stored(model: &Model) -> Outcome<Model> {
+pub(crate) fn as_stored(model: &Model) -> Outcome<Model> {
     model
         .to_bytes()
         .and_then(|bytes| Model::from_bytes(&bytes))
@@ -102,7 +106,7 @@ fn as_stored(model: &Model) -> Outcome<Model> {
 }
 
 /// The model with its measures beside what the trainer noted already.
-fn with_metrics(model: Model, report: &Report) -> Outcome<Model> {
+pub(crate) fn with_metrics(model: Model, report: &impl Serialize) -> Outcome<Model> {
     let mut parts = model.into_parts();
     let report = serde_json::to_value(report).map_err(anyhow::Error::from)?;
     match parts.metadata.metrics.as_object_mut() {

@@ -14,20 +14,17 @@ pub(super) struct Noise {
 }
 
 /// The drawings that are told apart, from exact to crooked.
-pub(super) const LEVELS: [Noise; 9] = {
+pub(super) const LEVELS: [Noise; 6] = {
     const fn noise(joint: f64, bone: f64) -> Noise {
         Noise { joint, bone }
     }
     [
-        noise(0.002, 0.01),
-        noise(0.002, 0.04),
-        noise(0.002, 0.09),
-        noise(0.006, 0.01),
-        noise(0.006, 0.09),
-        noise(0.014, 0.01),
-        noise(0.014, 0.09),
-        noise(0.022, 0.02),
-        noise(0.022, 0.12),
+        noise(0.005, 0.01),
+        noise(0.005, 0.10),
+        noise(0.014, 0.03),
+        noise(0.014, 0.12),
+        noise(0.025, 0.05),
+        noise(0.025, 0.16),
     ]
 };
 

@@ -23,6 +23,10 @@ use crate::weights::MlpWeights;
 /// How often bodies are pulled and looked at again.
 const STEPS: usize = 2;
 
+/// What the logarithm of the fit counts for. Proposals are not normally distributed, and taken at its word the fit is too
+/// sure: of 1, 0.3 and 0.1 the second ranks best.
+const TRUST_IN_FIT: f64 = 0.3;
+
 /// The parts of a model that a body's joints come from.
 pub(super) struct Body<'a> {
     pub(super) head: &'a mut Perceptron,
@@ -181,7 +185,9 @@ impl Refiner {
                 self.pull(index, noise);
                 self.proposals[index].look(body, drawn);
             }
-            self.proposals[index].log_weight += f64::from(hypotheses.log_probability(index));
+            let proposal = &mut self.proposals[index];
+            proposal.log_weight = TRUST_IN_FIT * proposal.log_weight
+                + f64::from(hypotheses.log_probability(index));
         }
         &mut self.proposals[..self.count]
     }

@@ -26,6 +26,7 @@ mod ways;
 
 pub use baseline::Baseline;
 pub use metrics::{Collector, Metrics, procrustes_mean_distance};
+pub(crate) use motion::sketch_between;
 pub use motion::{
     BetweenReport, BeyondReport, GaitReport, MotionEvalConfig, MotionEvalInput, MotionReport,
     MotionTestSet, TrueMotion, clip_gaits, clip_motions, evaluate_motion, held_out_motions,

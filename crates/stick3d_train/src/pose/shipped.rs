@@ -9,6 +9,8 @@ pub struct ShippedBody {
     pub controls: &'static str,
     /// `assets/poses/NAME.ron`.
     pub poses: &'static str,
+    /// How many key meshes of this kind of body the paper has.
+    pub paper_meshes: usize,
 }
 
 /// The shipped bodies.
@@ -17,11 +19,13 @@ pub const SHIPPED: [ShippedBody; 2] = [
         name: "human",
         controls: include_str!("../../../../assets/rigs/human.controls.ron"),
         poses: include_str!("../../../../assets/poses/human.ron"),
+        paper_meshes: 72,
     },
     ShippedBody {
         name: "horse",
         controls: include_str!("../../../../assets/rigs/horse.controls.ron"),
         poses: include_str!("../../../../assets/poses/horse.ron"),
+        paper_meshes: 8,
     },
 ];
 

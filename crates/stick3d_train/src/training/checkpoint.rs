@@ -12,11 +12,23 @@ use super::adam::Adam;
 use super::log::LossLog;
 use super::networks::NetworkWeights;
 
+/// Weights that a checkpoint can hold.
+pub(crate) trait NamedArrays {
+    /// Every array with a name, in a fixed order.
+    fn arrays(&mut self) -> Vec<(String, &mut Vec<f32>)>;
+}
+
+impl NamedArrays for NetworkWeights {
+    fn arrays(&mut self) -> Vec<(String, &mut Vec<f32>)> {
+        Self::arrays(self)
+    }
+}
+
 /// The state of a run between two epochs.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Checkpoint {
+pub(crate) struct Checkpoint<W = NetworkWeights> {
     /// All weights.
-    pub(crate) weights: NetworkWeights,
+    pub(crate) weights: W,
     /// The optimiser of the stage.
     pub(crate) adam: Adam,
     /// Index of the stage.
@@ -40,9 +52,9 @@ struct Entry {
 
 const ENTRY: &str = "stick3d_checkpoint";
 
-impl Checkpoint {
+impl<W: NamedArrays> Checkpoint<W> {
     /// The beginning of a run.
-    pub(crate) fn start(weights: NetworkWeights) -> Self {
+    pub(crate) fn start(weights: W) -> Self {
         Self {
             weights,
             adam: Adam::default(),

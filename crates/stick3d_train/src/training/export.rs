@@ -12,6 +12,10 @@ use super::run::Run;
 use super::statistics::statistics;
 use super::{TrainConfig, TrainError};
 
+/// What is done to a sketch's input vector.
+pub(crate) const INPUT_NORMALISATION: &str =
+    "offsets along the sketch path, divided by their root mean square length";
+
 /// The model: normalisation folded into the networks, weights rounded as the file stores them.
 pub(super) fn model(
     config: &TrainConfig,
@@ -44,8 +48,7 @@ pub(super) fn model(
         vertex_count,
         topology_hash: topology_hash(vertex_count, material.triangles),
         normalisation: Normalisation {
-            input: "offsets along the sketch path, divided by their root mean square length"
-                .to_owned(),
+            input: INPUT_NORMALISATION.to_owned(),
             extent_m: material.extent_m,
             centre_joint: figure.joints[figure.root].name.clone(),
         },

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
-use super::StageName;
+use super::{StageName, TrainError};
 
 /// The losses of one epoch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -19,6 +19,20 @@ pub struct LossRecord {
     pub loss: f64,
     /// Its terms, unweighted, mean over the epoch.
     pub terms: Vec<(String, f64)>,
+}
+
+impl LossRecord {
+    /// Fails when the loss is no number any more.
+    pub(crate) fn check(&self) -> Result<(), TrainError> {
+        if self.loss.is_finite() {
+            return Ok(());
+        }
+        Err(TrainError::Diverged {
+            stage: self.stage.label(),
+            epoch: self.epoch,
+            loss: self.loss,
+        })
+    }
 }
 
 /// All epochs so far.

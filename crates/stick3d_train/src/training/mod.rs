@@ -8,26 +8,28 @@
 //! [`train`] runs them on a rigged body, [`train_meshes`] on registered meshes. It can be stopped at any time and resumed from the checkpoint in its run folder: all random
 //! numbers depend on the seed and the step alone, so the result is the same to the last bit.
 
-mod adam;
+pub(crate) mod adam;
 mod answers;
-mod checkpoint;
+pub(crate) mod checkpoint;
 mod config;
 mod error;
 mod export;
-mod init;
+pub(crate) mod init;
 mod log;
 mod losses;
 mod material;
 mod networks;
-mod plot;
+pub(crate) mod plot;
 mod progress;
 mod run;
 mod sketch_loss;
-mod statistics;
+pub(crate) mod statistics;
 
 pub use config::{HiddenLayers, LossWeights, StageConfig, TrainConfig};
 pub use error::TrainError;
+pub(crate) use export::INPUT_NORMALISATION;
 pub use log::{LossLog, LossRecord};
+pub(crate) use losses::values;
 pub use material::{MeshTrainInput, TrainInput};
 pub use progress::{Progress, Quiet, StageName};
 pub use run::{Trained, train, train_meshes};

@@ -1,5 +1,7 @@
 //! The losses of a run as a picture.
 
+use std::path::Path;
+
 use glam::Vec2;
 use image::RgbaImage;
 
@@ -23,8 +25,19 @@ const COLORS: [[u8; 3]; 8] = [
     [150, 150, 60],
 ];
 
+/// Writes `losses.csv` and `losses.png` into a run's folder.
+pub(crate) fn leave(log: &LossLog, folder: &Path) -> Result<(), TrainError> {
+    let write = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        stick3d_model::files::write_atomically(&path, bytes)
+            .map_err(|source| TrainError::Io { path, source })
+    };
+    write("losses.csv", log.to_csv().as_bytes())?;
+    write("losses.png", &png(log)?)
+}
+
 /// All terms over all epochs on a logarithmic scale, as PNG.
-pub(crate) fn png(log: &LossLog) -> Result<Vec<u8>, TrainError> {
+fn png(log: &LossLog) -> Result<Vec<u8>, TrainError> {
     let mut bytes = std::io::Cursor::new(vec![]);
     draw(log)
         .write_to(&mut bytes, image::ImageFormat::Png)

@@ -165,7 +165,7 @@ impl<'a> Run<'a> {
                     self.epoch(networks, *name, *stage, &mut state, progress)?;
                 networks = trained;
                 progress.epoch(&record);
-                check_loss(&record)?;
+                record.check()?;
                 state.log.records.push(record);
                 state.epoch += 1;
                 let stop = progress.should_stop();
@@ -192,13 +192,7 @@ impl<'a> Run<'a> {
     /// Writes checkpoint, log and plot.
     fn leave(&self, folder: &Path, state: &mut Checkpoint) -> Result<(), TrainError> {
         state.save(&folder.join("checkpoint.safetensors"), &self.identity)?;
-        let write = |name: &str, bytes: &[u8]| {
-            let path = folder.join(name);
-            stick3d_model::files::write_atomically(&path, bytes)
-                .map_err(|source| TrainError::Io { path, source })
-        };
-        write("losses.csv", state.log.to_csv().as_bytes())?;
-        write("losses.png", &plot::png(&state.log)?)
+        plot::leave(&state.log, folder)
     }
 
     fn epoch(
@@ -331,17 +325,6 @@ impl<'a> Run<'a> {
 fn with_loss(loss: Tensor<1>, mut terms: Terms) -> Terms {
     terms.push(("loss", loss.detach()));
     terms
-}
-
-fn check_loss(record: &LossRecord) -> Result<(), TrainError> {
-    if record.loss.is_finite() {
-        return Ok(());
-    }
-    Err(TrainError::Diverged {
-        stage: record.stage.label(),
-        epoch: record.epoch,
-        loss: record.loss,
-    })
 }
 
 /// The learning rate's factor at one of `steps` steps: up to 1 over the first few, then down to a hundredth along half

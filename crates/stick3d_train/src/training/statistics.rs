@@ -42,13 +42,24 @@ pub(super) fn statistics(
         })
         .collect::<Result<Vec<_>, _>>()?
         .concat();
-    let (mean, whitening) = whitening(&latents)?;
+    let mut statistics = of_latents(&latents, longest_edges(parts, bodies, &picks))?;
+    statistics.answer_ways = answer_ways(parts, bodies, rotations, augmentation, seed)?;
+    statistics.round_to_half();
+    Ok(statistics)
+}
+
+/// The statistics of given latents, and of edges that are at most so long.
+pub(crate) fn of_latents(
+    latents: &[Vec<f32>],
+    longest_edges_m: Vec<f32>,
+) -> Result<TrainingStatistics, TrainError> {
+    let (mean, whitening) = whitening(latents)?;
     let mut statistics = TrainingStatistics {
         mean,
         whitening,
         far: 1.0,
-        longest_edges_m: longest_edges(parts, bodies, &picks),
-        answer_ways: answer_ways(parts, bodies, rotations, augmentation, seed)?,
+        longest_edges_m,
+        answer_ways: vec![],
     };
     statistics.round_to_half();
     let mut distances: Vec<f32> = latents.iter().map(|z| statistics.distance(z)).collect();

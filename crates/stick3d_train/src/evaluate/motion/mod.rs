@@ -14,6 +14,7 @@ mod sketch_level;
 
 pub use cases::{TrueMotion, clip_gaits, clip_motions, held_out_motions};
 pub use report::{BetweenReport, BeyondReport, GaitReport, MotionReport, MotionTestSet};
+pub(crate) use sketch_level::between as sketch_between;
 
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};

@@ -7,7 +7,7 @@ use stick3d_figure::sketch::{Sketch, SketchError};
 
 /// The sketch a share of the way between two: bones from the root joint outward, each turned by a part of the best rotation
 /// (spherical linear interpolation of its quaternion), its length changing evenly.
-pub(super) fn between(
+pub(crate) fn between(
     figure: &Figure,
     from: &Sketch,
     to: &Sketch,
