@@ -186,8 +186,8 @@ impl Refiner {
                 self.proposals[index].look(body, drawn);
             }
             let proposal = &mut self.proposals[index];
-            proposal.log_weight = TRUST_IN_FIT * proposal.log_weight
-                + f64::from(hypotheses.log_probability(index));
+            proposal.log_weight =
+                TRUST_IN_FIT * proposal.log_weight + f64::from(hypotheses.log_probability(index));
         }
         &mut self.proposals[..self.count]
     }
