@@ -20,8 +20,9 @@ pub(super) struct Slopes {
     arms: Vec<Vec3>,
     /// Derivatives by the code: one `[coefficient_len]` for each of x, y and z.
     by_code: [Vec<f32>; 3],
-    /// Derivatives by the outputs of the layers.
-    by_output: Vec<Vec<f32>>,
+    /// Derivatives of two coordinates by the outputs of the layers.
+    by_output: Vec<[Vec<f32>; 2]>,
+    unused: Vec<f32>,
 }
 
 impl Slopes {
@@ -57,8 +58,9 @@ impl Slopes {
             by_output: head
                 .layers
                 .iter()
-                .map(|layer| vec![0.0; layer.output_len])
+                .map(|layer| [(); 2].map(|()| vec![0.0; layer.output_len]))
                 .collect(),
+            unused: vec![],
         }
     }
 
@@ -93,38 +95,53 @@ impl Slopes {
                     }
                 }
             }
-            for axis in 0..axes {
-                let out = &mut slopes[(joint * axes + axis) * self.rank..][..self.rank];
-                self.back(head, axis, out);
+            let out = &mut slopes[joint * axes * self.rank..][..axes * self.rank];
+            let (along_x, rest) = out.split_at_mut(self.rank);
+            let (along_y, along_z) = rest.split_at_mut(self.rank);
+            self.back(head, [0, 1], [along_x, along_y]);
+            if axes == 3 {
+                // There is no fourth to go with it.
+                self.unused.resize(self.rank, 0.0);
+                let mut unused = std::mem::take(&mut self.unused);
+                self.back(head, [2, 2], [along_z, &mut unused]);
+                self.unused = unused;
             }
         }
     }
 
-    /// From the derivative by the code to that along the ways.
-    fn back(&mut self, head: &Perceptron, axis: usize, out: &mut [f32]) {
+    /// From the derivatives by the code to those along the ways, for two coordinates at once.
+    fn back(&mut self, head: &Perceptron, axes: [usize; 2], outs: [&mut [f32]; 2]) {
         let last = self.by_output.len() - 1;
-        self.by_output[last].copy_from_slice(&self.by_code[axis]);
+        for (by_output, axis) in self.by_output[last].iter_mut().zip(axes) {
+            by_output.copy_from_slice(&self.by_code[axis]);
+        }
         for index in (0..=last).rev() {
             if head.weights().has_relu_after(index) {
-                let slopes = self.by_output[index].iter_mut();
-                for (slope, value) in slopes.zip(head.value(index)) {
-                    if *value <= 0.0 {
-                        *slope = 0.0;
+                for slopes in &mut self.by_output[index] {
+                    for (slope, value) in slopes.iter_mut().zip(head.value(index)) {
+                        if *value <= 0.0 {
+                            *slope = 0.0;
+                        }
                     }
                 }
             }
             if index > 0 {
                 let (before, after) = self.by_output.split_at_mut(index);
-                before[index - 1].fill(0.0);
-                kernels::accumulate(
-                    &after[0],
-                    &self.transposed[index - 1],
-                    &mut before[index - 1],
-                );
+                let [a, b] = &mut before[index - 1];
+                a.fill(0.0);
+                b.fill(0.0);
+                let from = [after[0][0].as_slice(), after[0][1].as_slice()];
+                kernels::accumulate_pair(from, &self.transposed[index - 1], [a, b]);
             }
         }
-        out.fill(0.0);
-        kernels::accumulate(&self.by_output[0], &self.first, out);
+        let [a, b] = outs;
+        a.fill(0.0);
+        b.fill(0.0);
+        let from = [
+            self.by_output[0][0].as_slice(),
+            self.by_output[0][1].as_slice(),
+        ];
+        kernels::accumulate_pair(from, &self.first, [a, b]);
     }
 }
 
