@@ -149,3 +149,60 @@ fn transposed(matrix: &[f32], rows: usize, columns: usize) -> Vec<f32> {
     let entry = |i: usize| matrix[(i % rows.max(1)) * columns + i / rows.max(1)];
     (0..rows * columns).map(entry).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::infer::joint_map::JointMap;
+    use crate::synthetic::{Kind, model};
+
+    #[test]
+    fn slopes_are_differences_of_joints() {
+        for kind in [Kind::Basis, Kind::Skinned] {
+            let model = model(kind);
+            let layer = model.final_layer();
+            let latent_len = model.latent_len();
+            let way = |i: usize| (1.7 * i as f32).sin();
+            let ways: Vec<f32> = (0..2 * latent_len).map(way).collect();
+            let JointMap::Linear(rows) = JointMap::new(&model) else {
+                panic!("{kind:?} is linear")
+            };
+            let mut head = Perceptron::new(model.head());
+            let mut scratch = layer.scratch();
+            let mut joints_at = |offset: [f32; 2]| {
+                let latent: Vec<f32> = (0..latent_len)
+                    .map(|i| 0.3 + offset[0] * ways[i] + offset[1] * ways[latent_len + i])
+                    .collect();
+                let mut joints = vec![Vec3::ZERO; model.figure().joint_count()];
+                let code = head.run(&latent);
+                rows.write(layer.features(code, &mut scratch), &mut joints);
+                joints
+            };
+            let step = 1e-3;
+            let differences = [0, 1].map(|way| {
+                let at = |by: f32| {
+                    let mut offset = [0.0; 2];
+                    offset[way] = by;
+                    joints_at(offset)
+                };
+                let (after, before) = (at(step), at(-step));
+                let pairs = after.iter().zip(&before);
+                pairs
+                    .map(|(a, b)| (*a - *b) / (2.0 * step))
+                    .collect::<Vec<_>>()
+            });
+            joints_at([0.0; 2]);
+            let mut slopes = Slopes::new(model.head(), layer, &ways);
+            let mut found = vec![0.0; 3 * differences[0].len() * 2];
+            let features = layer.features(head.output(), &mut scratch).to_vec();
+            slopes.write(&head, layer, &features, &rows, 3, &mut found);
+            for (i, pair) in found.chunks_exact(2).enumerate() {
+                for way in 0..2 {
+                    let expected = differences[way][i / 3][i % 3];
+                    let close = (pair[way] - expected).abs() < 0.02 * expected.abs().max(0.5);
+                    assert!(close, "{kind:?} {i} {way}: {} {expected}", pair[way]);
+                }
+            }
+        }
+    }
+}
