@@ -3,6 +3,7 @@
 use bevy::prelude::*;
 use stick3d_figure::{Figure, Sketch, SketchError};
 
+use crate::alternatives::SketchAlternatives;
 use crate::model_asset::StickModel;
 use crate::stream::StreamedBody;
 
@@ -12,8 +13,8 @@ use crate::stream::StreamedBody;
 /// asset. Another handle makes another body of it.
 ///
 /// # Mandatory components
-/// Added by themselves: [`Latent`], [`Grounded`], [`FigureStatus`], [`StreamedBody`], [`Transform`],
-/// [`Visibility`].
+/// Added by themselves: [`Latent`], [`Grounded`], [`FigureStatus`], [`SketchAlternatives`], [`StreamedBody`],
+/// [`Transform`], [`Visibility`].
 ///
 /// # Optional components
 /// - [`StickSketch`]: the drawing. Without one, and without a latent, the figure stands as its template does.
@@ -23,11 +24,19 @@ use crate::stream::StreamedBody;
 ///   [`Stick3dMaterialPlugin`](crate::Stick3dMaterialPlugin).
 ///
 /// # Change detection
-/// A changed [`StickSketch`] is encoded into the [`Latent`]; a changed [`Latent`] is decoded into the
+/// A changed [`StickSketch`] is encoded into the [`Latent`] of the body that is chosen of its [`SketchAlternatives`]; a changed [`Latent`] is decoded into the
 /// entity's own mesh, in the same frame. A figure of which neither changed costs a comparison.
 #[derive(Component, Clone, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Component, Debug, PartialEq, Clone)]
-#[require(Latent, Grounded, FigureStatus, StreamedBody, Transform, Visibility)]
+#[require(
+    Latent,
+    Grounded,
+    FigureStatus,
+    SketchAlternatives,
+    StreamedBody,
+    Transform,
+    Visibility
+)]
 pub struct StickFigure(pub Handle<StickModel>);
 
 impl StickFigure {

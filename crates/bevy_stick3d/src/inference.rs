@@ -7,6 +7,7 @@ use bevy::prelude::*;
 use stick3d_figure::Sketch;
 use stick3d_model::{InferError, Inference, ModelError};
 
+use crate::alternatives::{ChooseAlternative, FlipLimb, SketchAlternatives, choose_alternatives};
 use crate::figure::{FigureStatus, Latent, StickFigure, StickSketch};
 use crate::model_asset::StickModel;
 use crate::schedule::Stick3dSystems;
@@ -95,7 +96,7 @@ impl StickInference {
     }
 }
 
-/// Runs the networks: models are made ready, and changed sketches become latents.
+/// Runs the networks: models are made ready, changed sketches become latents, and other bodies of theirs are chosen.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Stick3dInferencePlugin;
 
@@ -108,13 +109,20 @@ impl Plugin for Stick3dInferencePlugin {
             .register_type::<StickSketch>()
             .register_type::<Latent>()
             .register_type::<FigureStatus>()
+            .register_type::<SketchAlternatives>()
+            .register_type::<ChooseAlternative>()
+            .register_type::<FlipLimb>()
+            .add_message::<ChooseAlternative>()
+            .add_message::<FlipLimb>()
             .add_systems(
                 PostUpdate,
                 (
                     (forget_changed_models, note_failed_models, make_models_ready)
                         .chain()
                         .in_set(Stick3dSystems::Models),
-                    encode_sketches.in_set(Stick3dSystems::Encode),
+                    (encode_sketches, choose_alternatives)
+                        .chain()
+                        .in_set(Stick3dSystems::Encode),
                 ),
             );
     }
@@ -174,13 +182,14 @@ fn encode_sketches(
         Ref<StickFigure>,
         Option<Ref<StickSketch>>,
         &StreamedBody,
+        &mut SketchAlternatives,
         &mut Latent,
         &mut FigureStatus,
     )>,
     mut inference: ResMut<StickInference>,
     ticks: SystemChangeTick,
 ) {
-    for (figure, sketch, body, mut latent, mut status) in &mut figures {
+    for (figure, sketch, body, mut alternatives, mut latent, mut status) in &mut figures {
         let Some(ready) = inference.get_mut(&figure.0) else {
             continue;
         };
@@ -190,11 +199,17 @@ fn encode_sketches(
             && figure
                 .last_changed()
                 .is_newer_than(latent.last_changed(), ticks.this_run());
+        if (other_model || sketch.is_none()) && !alternatives.is_blank() {
+            alternatives.forget();
+        }
         if let Some(sketch) = sketch
-            && (other_model || sketch.is_changed())
+            && (other_model || sketch.is_changed() || alternatives.has_wish())
         {
-            match encode_points(ready, &sketch.points, &mut latent) {
+            match alternatives.follow(&mut ready.inference, &sketch.points) {
                 Ok(()) => {
+                    if let Some(shown) = alternatives.shown() {
+                        latent.0.clone_from(&shown.latent);
+                    }
                     foreign = false;
                     status.set_if_neq(FigureStatus::Ready)
                 }

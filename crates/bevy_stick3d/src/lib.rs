@@ -22,8 +22,25 @@
 //!
 //! # Authored and generated
 //! You write [`StickFigure`] (which model), [`StickSketch`] (the drawing) or [`Latent`] (the pose as the
-//! networks know it). The plugin writes [`StreamedBody`], [`FigureStatus`], and the entity's `Mesh3d`.
+//! networks know it). The plugin writes [`StreamedBody`], [`FigureStatus`], [`SketchAlternatives`], and the entity's `Mesh3d`.
 //! A change of the first becomes a change of the second in the same frame; see [`Stick3dSystems`].
+//!
+//! # Several bodies look like one drawing
+//! A drawing says nothing about depth. [`SketchAlternatives`] has the bodies that it may mean, the likeliest first, which is
+//! shown; [`ChooseAlternative`] shows another, and [`FlipLimb`] turns one limb's depth round:
+//!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_stick3d::prelude::*;
+//! fn next(figures: Query<(Entity, &SketchAlternatives)>, mut choose: MessageWriter<ChooseAlternative>) {
+//!     for (figure, alternatives) in &figures {
+//!         let count = alternatives.as_slice().len().max(1);
+//!         let index = alternatives.chosen().map_or(0, |index| (index + 1) % count);
+//!         choose.write(ChooseAlternative { figure, index });
+//!     }
+//! }
+//! # bevy::ecs::system::assert_is_system(next);
+//! ```
 //!
 //! # Motions
 //! Several sketches are a clip, and a clip is a Bevy animation: `(StickFigure::human(), PlayStickClip(clip))` plays it, and a
@@ -37,7 +54,7 @@
 //! | [`Stick3dSchedulePlugin`] | orders [`Stick3dSystems`] |
 //! | [`Stick3dModelPlugin`] | models as assets; the embedded man and horse |
 //! | [`Stick3dSketchInputPlugin`] | pointer input over a [`SketchCanvas`] becomes strokes and sketches |
-//! | [`Stick3dInferencePlugin`] | sketches become latents |
+//! | [`Stick3dInferencePlugin`] | sketches become latents, of the alternative that is chosen |
 //! | [`Stick3dAnimationPlugin`] | clips of sketches become Bevy animations that move latents and figures; see [`animation`] |
 //! | [`Stick3dStreamPlugin`] | latents become meshes |
 //! | [`Stick3dMaterialPlugin`] | figures without a material get one |
@@ -52,6 +69,7 @@
 //! # When something is wrong
 //! Nothing panics: [`Stick3dStatus`] says what is wrong with models and clips, [`FigureStatus`] what is wrong with a figure.
 
+mod alternatives;
 pub mod animation;
 #[cfg(feature = "editor")]
 pub mod editor;
@@ -69,6 +87,7 @@ mod stream;
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
+pub use alternatives::{ChooseAlternative, FlipLimb, SketchAlternatives};
 pub use animation::Stick3dAnimationPlugin;
 #[cfg(feature = "horse")]
 pub use embedded::HORSE_MODEL;
@@ -97,8 +116,8 @@ pub mod prelude {
         StrokeFinished, StrokeUndone,
     };
     pub use crate::{
-        FigureStatus, Grounded, Latent, Stick3dPlugin, Stick3dStatus, Stick3dSystems, StickFigure,
-        StickModel, StickSketch,
+        ChooseAlternative, FigureStatus, FlipLimb, Grounded, Latent, SketchAlternatives,
+        Stick3dPlugin, Stick3dStatus, Stick3dSystems, StickFigure, StickModel, StickSketch,
     };
 }
 

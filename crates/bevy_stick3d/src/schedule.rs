@@ -21,7 +21,8 @@ pub enum Stick3dSystems {
     Tell,
     /// Loaded, changed and removed models are made ready to run. (`PostUpdate`)
     Models,
-    /// A changed [`StickSketch`](crate::StickSketch) becomes a [`Latent`](crate::Latent). (`PostUpdate`)
+    /// A changed [`StickSketch`](crate::StickSketch) becomes a [`Latent`](crate::Latent), and
+    /// [other bodies](crate::SketchAlternatives) of it are chosen. (`PostUpdate`)
     Encode,
     /// Clips whose model is ready become animations, and start. (`PostUpdate`)
     Clips,

@@ -205,10 +205,10 @@ fn shape_cost(figure: &Figure, placed: &[Option<Vec2>], usual_scale: f32) -> f32
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulate::any_order::{
-        HORSE_FREEDOM, HUMAN_FREEDOM, Habits, draw as draw_in_any_order, flat_pose, is_readable,
-    };
-    use crate::simulate::{self, HORSE, HUMAN, Hand, STYLES};
+    use crate::simulate::any_order::{self, Habits, flat_pose, is_readable};
+    use crate::simulate::guided::{self, STYLES};
+    use crate::simulate::subjects::{HORSE, HUMAN};
+    use crate::simulate::{self, Hand};
 
     const HEIGHT_PX: f32 = 500.0;
 
@@ -240,28 +240,20 @@ mod tests {
     #[test]
     fn drawings_in_any_order_are_still_read() {
         for (figure, bar) in [(Figure::human(), 97), (Figure::horse(), 91)] {
-            let freedom = if figure.views.both_ways {
-                HORSE_FREEDOM
-            } else {
-                HUMAN_FREEDOM
-            };
             let (mut right, mut read_along) = (0, 0);
             for seed in 0..100 {
                 let mut rng = simulate::rng(seed);
-                let pose = std::iter::repeat_with(|| flat_pose(figure, &mut rng, freedom))
+                let pose = std::iter::repeat_with(|| flat_pose(figure, &mut rng))
                     .find(|pose| is_readable(figure, pose))
                     .unwrap();
                 let meant = simulate::on_canvas(&pose, HEIGHT_PX);
-                let mut habits = Habits::default();
-                if figure.views.both_ways {
-                    habits.loop_radius = (0.15, 0.3);
-                }
+                let habits = Habits::of(figure);
                 let hand = Hand {
                     height_px: HEIGHT_PX,
                     jitter_px: 3.0,
                     ..Hand::default()
                 };
-                let strokes = draw_in_any_order(figure, &mut rng, &meant, &[], hand, habits);
+                let strokes = any_order::draw(figure, &mut rng, &meant, &[], hand, habits);
                 let found = read_freely(figure, &strokes, usual_scale(figure));
                 let is_right =
                     found.progress.complete && is_right(figure, &found.progress.placed, &meant);
@@ -290,8 +282,8 @@ mod tests {
                     height_px: HEIGHT_PX,
                     ..Hand::default()
                 };
-                let cuts = simulate::cuts(figure, &mut rng, style);
-                let strokes = simulate::draw(figure, &mut rng, &meant, &cuts, hand);
+                let cuts = guided::cuts(figure, &mut rng, style);
+                let strokes = guided::draw(figure, &mut rng, &meant, &cuts, hand);
                 let found = read_freely(figure, &strokes, usual_scale(figure));
                 right += u32::from(
                     found.progress.complete && is_right(figure, &found.progress.placed, &meant),
