@@ -300,6 +300,9 @@ pub(crate) struct TrainArguments {
     /// A tenth of the bodies and of the epochs: to see that everything works
     #[arg(long)]
     pub(crate) quick: bool,
+    /// Another value for a part of the recipe, which every model file holds: `hypotheses=1`, `loss.alpha=1e4`
+    #[arg(long = "set", value_name = "PART=JSON")]
+    pub(crate) changes: Vec<String>,
     /// Or the paper's own system
     #[command(flatten)]
     pub(crate) paper: PaperArguments,

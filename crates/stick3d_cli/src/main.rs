@@ -20,6 +20,7 @@ mod paper;
 mod pictures;
 mod pose;
 mod progress;
+mod recipe;
 mod reproduce;
 mod train;
 

@@ -38,7 +38,7 @@ pub(crate) fn train(arguments: &TrainArguments, folder: &Path, figure: &Figure) 
     let (set, said) = read(folder, &arguments.set, figure)?;
     println!("{said}");
     let recipe = TrainConfig::meshes(figure, set.meshes.len(), set.vertex_count());
-    let config = quicker(arguments, recipe);
+    let config = quicker(arguments, recipe)?;
     let input = MeshTrainInput {
         figure,
         set: &set,

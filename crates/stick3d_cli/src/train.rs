@@ -13,7 +13,7 @@ use crate::args::TrainArguments;
 use crate::corpus::Corpus;
 use crate::failure::{Failure, Outcome};
 use crate::progress::Bar;
-use crate::{eval, inputs, mesh_set, paper};
+use crate::{eval, inputs, mesh_set, paper, recipe};
 
 /// What `--quick` divides bodies and epochs by.
 const QUICK: usize = 10;
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &TrainArguments) -> Outcome {
     }
     let corpus = Corpus::read(&arguments.body, Some(&figure))?;
     corpus.said.iter().for_each(|line| println!("{line}"));
-    let config = config(arguments, &figure);
+    let config = config(arguments, &figure)?;
     let (trained_on, held_out) = corpus.split(config.seed);
     let streams = |number: u64| corpus.stream(&trained_on, config.seed.rotate_left(32) ^ number);
     let input = TrainInput {
@@ -116,12 +116,12 @@ pub(crate) fn with_metrics(model: Model, report: &impl Serialize) -> Outcome<Mod
     Model::new(parts).map_err(Failure::model)
 }
 
-fn config(arguments: &TrainArguments, figure: &Figure) -> TrainConfig {
+fn config(arguments: &TrainArguments, figure: &Figure) -> Outcome<TrainConfig> {
     quicker(arguments, TrainConfig::of(figure))
 }
 
-/// A recipe with the seed and the haste that were asked for.
-pub(crate) fn quicker(arguments: &TrainArguments, recipe: TrainConfig) -> TrainConfig {
+/// A recipe with the seed, the haste and the changes that were asked for.
+pub(crate) fn quicker(arguments: &TrainArguments, recipe: TrainConfig) -> Outcome<TrainConfig> {
     let mut config = TrainConfig {
         seed: arguments.seed,
         ..recipe
@@ -133,5 +133,5 @@ pub(crate) fn quicker(arguments: &TrainArguments, recipe: TrainConfig) -> TrainC
             stage.epochs = stage.epochs.div_ceil(QUICK);
         }
     }
-    config
+    recipe::changed(config, &arguments.changes)
 }

@@ -70,6 +70,49 @@ fn accumulate_tile(input: &[f32], rows: &[f32], row_len: usize, start: usize, ou
     }
 }
 
+/// [`accumulate`] for two inputs at once, whose zeros are at the same places: the rows are read once for both.
+pub(crate) fn accumulate_pair(inputs: [&[f32]; 2], rows: &[f32], outputs: [&mut [f32]; 2]) {
+    let [first, second] = outputs;
+    let row_len = first.len();
+    debug_assert_eq!(rows.len(), inputs[0].len() * row_len);
+    debug_assert_eq!(row_len, second.len());
+    vectorised(
+        #[inline(always)]
+        || {
+            let mut pending = [0_usize; 4];
+            let mut count = 0;
+            for index in 0..inputs[0].len() {
+                if inputs[0][index] == 0.0 && inputs[1][index] == 0.0 {
+                    continue;
+                }
+                pending[count] = index;
+                count += 1;
+                if count == 4 {
+                    let row = pending.map(|i| &rows[i * row_len..][..row_len]);
+                    let a = pending.map(|i| inputs[0][i]);
+                    let b = pending.map(|i| inputs[1][i]);
+                    let (first, second) = (&mut first[..row_len], &mut second[..row_len]);
+                    for j in 0..row_len {
+                        let column = [row[0][j], row[1][j], row[2][j], row[3][j]];
+                        first[j] += (a[0] * column[0] + a[1] * column[1])
+                            + (a[2] * column[2] + a[3] * column[3]);
+                        second[j] += (b[0] * column[0] + b[1] * column[1])
+                            + (b[2] * column[2] + b[3] * column[3]);
+                    }
+                    count = 0;
+                }
+            }
+            for &index in &pending[..count] {
+                let row = &rows[index * row_len..][..row_len];
+                for ((first, second), weight) in first.iter_mut().zip(second.iter_mut()).zip(row) {
+                    *first += inputs[0][index] * weight;
+                    *second += inputs[1][index] * weight;
+                }
+            }
+        },
+    );
+}
+
 /// The sum of products, in lanes.
 pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     const LANES: usize = 16;
@@ -136,6 +179,35 @@ mod tests {
             assert!((out - expected).abs() < 1e-5, "{j}: {out} {expected}");
         }
         accumulate(&input, &[], &mut []);
+    }
+
+    #[test]
+    fn a_pair_is_two_single_ones() {
+        let (count, row_len) = (23, 37);
+        let number = |i: usize| ((i * 37 % 89) as f32 - 44.0) / 32.0;
+        let rows: Vec<f32> = (0..count * row_len).map(number).collect();
+        let input = |scale: f32| -> Vec<f32> {
+            let zeroed = |i: usize| {
+                if i % 4 == 2 {
+                    0.0
+                } else {
+                    scale * number(i + 5)
+                }
+            };
+            (0..count).map(zeroed).collect()
+        };
+        let inputs = [input(1.0), input(-0.7)];
+        let mut pair = [vec![0.0; row_len], vec![0.0; row_len]];
+        let [first, second] = &mut pair;
+        accumulate_pair([&inputs[0], &inputs[1]], &rows, [first, second]);
+        for (input, found) in inputs.iter().zip(&pair) {
+            let mut expected = vec![0.0; row_len];
+            accumulate(input, &rows, &mut expected);
+            for (a, b) in found.iter().zip(&expected) {
+                assert!((a - b).abs() < 1e-5);
+            }
+        }
+        assert_eq!(dot(&[1.0, 2.0, 3.0], &[4.0, -5.0, 6.0]), 12.0);
     }
 
     #[test]

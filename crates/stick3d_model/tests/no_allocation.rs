@@ -6,7 +6,7 @@ use std::cell::Cell;
 use glam::Vec3;
 use stick3d_figure::sketch::Sketch;
 use stick3d_model::latent::{Easing, MotionSettings};
-use stick3d_model::{Inference, LatentKey, Model, Motion};
+use stick3d_model::{Alternatives, Inference, LatentKey, Model, Motion};
 
 thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
@@ -45,7 +45,9 @@ fn a_frame_allocates_nothing() {
     let mut normals = positions.clone();
     let mut joints = vec![Vec3::ZERO; model.figure().joint_count()];
 
+    let mut alternatives = Alternatives::default();
     inference.encode(&sketch, &mut latent).unwrap();
+    inference.infer(&sketch, &mut alternatives).unwrap();
     let keys = [0.0_f32, 1.0].map(|time_s| LatentKey {
         latent: latent.iter().map(|x| x * (1.0 - 0.3 * time_s)).collect(),
         time_s,
@@ -56,6 +58,7 @@ fn a_frame_allocates_nothing() {
     let before = ALLOCATIONS.with(Cell::get);
     for _ in 0..3 {
         inference.encode(&sketch, &mut latent).unwrap();
+        inference.infer(&sketch, &mut alternatives).unwrap();
         inference
             .decode(&latent, &mut positions, &mut normals)
             .unwrap();

@@ -100,6 +100,7 @@ impl Alternatives {
         if let Some(first) = first {
             list[..=first].rotate_right(1);
         }
+        self.len = self.len.min(Self::MOST);
     }
 
     fn merge(&mut self, same_m: f32) {

@@ -54,11 +54,25 @@ impl<'a> Hypotheses<'a> {
         self.latent(best.unwrap_or(0))
     }
 
-    /// The natural logarithm of a latent's probability among all.
+    /// The mean of the latents, each counted by its probability: what one answer would be.
+    ///
+    /// # Shapes
+    /// - `mean`: `[latent_len]`
+    pub fn write_mean(&self, mean: &mut [f32]) {
+        mean.fill(0.0);
+        for index in 0..self.len() {
+            let probability = self.log_probability(index).exp();
+            for (mean, x) in mean.iter_mut().zip(self.latent(index)) {
+                *mean += probability * x;
+            }
+        }
+    }
+
+    /// The natural logarithm of a latent's probability among all. Beyond the last: that of an average one.
     #[must_use]
     pub fn log_probability(&self, index: usize) -> f32 {
         let Some(score) = self.scores.get(index) else {
-            return 0.0;
+            return -(self.len() as f32).ln();
         };
         let highest = self
             .scores

@@ -1,6 +1,7 @@
 //! Running a model at frame rate: sketch to latent, latent to mesh, on plain arrays.
 
 mod alternatives;
+mod flip;
 mod gaussian;
 mod hypotheses;
 mod joint_map;
@@ -13,7 +14,7 @@ pub use alternatives::{Alternative, Alternatives};
 pub use hypotheses::Hypotheses;
 
 use glam::Vec3;
-use stick3d_figure::figure::Figure;
+use stick3d_figure::figure::{Figure, Limb};
 use stick3d_figure::mesh::NormalAdjacency;
 use stick3d_figure::sketch::{Sketch, SketchError};
 use thiserror::Error;
@@ -199,6 +200,38 @@ impl Inference {
             }
         }
         alternatives.rank(SAME_SHARE * self.figure.template_extent_m());
+        Ok(())
+    }
+
+    /// The body that is as that of `latent`, but for a limb, whose depth is the other way round: it points away from the
+    /// viewer where it pointed toward him. Its joints stay where they are drawn. Where the model does not know how its
+    /// answers are off, the latent stays as it is.
+    ///
+    /// # Shapes
+    /// - `latent`, `flipped`: `[latent_len]`
+    ///
+    /// # Errors
+    /// [`InferError::Sketch`] when the sketch is of another figure, [`InferError::Length`], [`InferError::NotFinite`].
+    pub fn flip_limb(
+        &mut self,
+        sketch: &Sketch,
+        latent: &[f32],
+        limb: &Limb,
+        flipped: &mut [f32],
+    ) -> Result<(), InferError> {
+        require("the flipped latent", flipped.len(), self.latent_len)?;
+        coefficients(&mut self.head, self.latent_len, latent)?;
+        sketch.write_input_vector(&self.figure, &mut self.input)?;
+        flipped.copy_from_slice(latent);
+        if let (Some(refiner), JointMap::Linear(rows)) = (&mut self.refiner, &self.joints) {
+            let mut body = Body {
+                head: &mut self.head,
+                layer: &self.final_layer,
+                scratch: &mut self.final_scratch,
+                rows,
+            };
+            refiner.flip(latent, limb, sketch.points(), &mut body, flipped);
+        }
         Ok(())
     }
 

@@ -80,24 +80,17 @@ impl Skeleton {
         }
     }
 
-    /// Adds the covariance of a drawing's joints to `covariance`, `[joint, axis]` by `[joint, axis]`, square metres.
+    /// Writes the covariance of a drawing's joints for bones that are off by their whole length, `[joint, axis]` by
+    /// `[joint, axis]`, square metres.
     ///
     /// `points` is the body's projection, metres; `strains` are per bone how much more than usual its length is to be
     /// doubted (1: no more).
-    pub(super) fn add_covariance(
-        &self,
-        noise: Noise,
-        points: &[Vec2],
-        strains: &[f64],
-        covariance: &mut [f64],
-    ) {
+    pub(super) fn write_bones(&self, points: &[Vec2], strains: &[f64], covariance: &mut [f64]) {
         let size = 2 * points.len();
-        let joint = (noise.joint * self.size_m).powi(2);
-        (0..size).for_each(|i| covariance[i * size + i] += joint);
+        covariance.fill(0.0);
         for ((&[near, far], beyond), strain) in self.bones.iter().zip(&self.beyond).zip(strains) {
             let along = points[far] - points[near];
-            let variance = noise.bone * noise.bone * strain;
-            add_square(covariance, size, variance, |joint, axis| {
+            add_square(covariance, size, *strain, |joint, axis| {
                 if beyond[joint] {
                     f64::from(along[axis])
                 } else {
@@ -105,17 +98,26 @@ impl Skeleton {
                 }
             });
         }
+    }
+
+    /// Adds the covariance of a drawing that is anywhere and of any size.
+    pub(super) fn add_place(&self, points: &[Vec2], covariance: &mut [f64]) {
+        let size = 2 * points.len();
         let place = (PLACE * self.size_m).powi(2);
-        add_square(covariance, size, place, |_, axis| {
-            f64::from(u8::from(axis == 0))
-        });
-        add_square(covariance, size, place, |_, axis| {
-            f64::from(u8::from(axis == 1))
-        });
+        for axis in 0..2 {
+            add_square(covariance, size, place, |_, other| {
+                f64::from(u8::from(axis == other))
+            });
+        }
         let middle = points.iter().sum::<Vec2>() / points.len().max(1) as f32;
         add_square(covariance, size, SIZE * SIZE, |joint, axis| {
             f64::from((points[joint] - middle)[axis])
         });
+    }
+
+    /// The variance of a joint's coordinate, square metres.
+    pub(super) fn joint_variance(&self, noise: Noise) -> f64 {
+        (noise.joint * self.size_m).powi(2)
     }
 
     /// How far beyond its usual error each bone's length is: what is expected of its square, over the variance, given the
@@ -143,6 +145,11 @@ impl Skeleton {
             let error = noise.bone * *strain * pull;
             *strain = (FREEDOM + error * error) / (FREEDOM + 1.0);
         }
+    }
+
+    /// The figure's size, metres.
+    pub(super) fn size_m(&self) -> f64 {
+        self.size_m
     }
 
     pub(super) fn bone_count(&self) -> usize {

@@ -21,7 +21,7 @@ use crate::kernels;
 use crate::weights::MlpWeights;
 
 /// How often bodies are pulled and looked at again.
-const STEPS: usize = 2;
+const STEPS: usize = 3;
 
 /// What the logarithm of the fit counts for. Proposals are not normally distributed, and taken at its word the fit is too
 /// sure: of 1, 0.3 and 0.1 the second ranks best.
@@ -54,7 +54,11 @@ pub(super) struct Proposal {
     slopes: Vec<f32>,
     /// `slopes` times its transpose, `[joint, axis]` by `[joint, axis]`.
     spread: Vec<f64>,
-    /// See [`Skeleton::add_covariance`].
+    /// `spread`, and that the drawing is anywhere and of any size.
+    placed: Vec<f64>,
+    /// See [`Skeleton::write_bones`].
+    bones: Vec<f64>,
+    /// See [`Skeleton::write_bones`].
     strains: Vec<f64>,
     /// The logarithm of its probability, up to a constant of the drawing.
     pub(super) log_weight: f64,
@@ -64,9 +68,9 @@ pub(super) struct Proposal {
 #[derive(Debug, Clone)]
 pub(super) struct Refiner {
     /// `[rank][latent_len]`: the ways in which Encoder2D's answers are off, each as long as it is usual.
-    ways: Vec<f32>,
-    slopes: Slopes,
-    skeleton: Skeleton,
+    pub(super) ways: Vec<f32>,
+    pub(super) slopes: Slopes,
+    pub(super) skeleton: Skeleton,
     gaussian: Gaussian,
     difference: Vec<f64>,
     proposals: Vec<Proposal>,
@@ -85,6 +89,8 @@ impl Proposal {
             aligned: vec![Vec2::ZERO; joints],
             slopes: vec![0.0; size * rank],
             spread: vec![0.0; size * size],
+            placed: vec![0.0; size * size],
+            bones: vec![0.0; size * size],
             strains: vec![1.0; bones],
             log_weight: 0.0,
         }
@@ -123,6 +129,13 @@ impl Proposal {
         }
     }
 
+    /// What the drawing's covariance is made of, as seen from here.
+    fn gather(&mut self, skeleton: &Skeleton) {
+        self.placed.copy_from_slice(&self.spread);
+        skeleton.add_place(&self.flat, &mut self.placed);
+        skeleton.write_bones(&self.flat, &self.strains, &mut self.bones);
+    }
+
     /// The drawing minus what is expected of it at [`Proposal::start`], as seen from here.
     fn write_difference(&self, rank: usize, difference: &mut [f64]) {
         let differences = difference.iter_mut().zip(self.slopes.chunks_exact(rank));
@@ -154,7 +167,7 @@ impl Refiner {
             skeleton,
             gaussian: Gaussian::new(2 * joints),
             difference: vec![0.0; 2 * joints],
-            proposals: vec![proposal; hypotheses],
+            proposals: vec![proposal; hypotheses + 1],
             count: 0,
         }
     }
@@ -166,22 +179,25 @@ impl Refiner {
         drawn: &[Vec2],
         body: &mut Body<'_>,
     ) -> &mut [Proposal] {
-        self.count = hypotheses.len().min(self.proposals.len());
+        let several = hypotheses.len().min(self.proposals.len() - 1);
+        self.count = several + usize::from(several > 1);
         for (index, proposal) in self.proposals[..self.count].iter_mut().enumerate() {
-            proposal.start.copy_from_slice(hypotheses.latent(index));
-            proposal.latent.copy_from_slice(hypotheses.latent(index));
+            if index < several {
+                proposal.start.copy_from_slice(hypotheses.latent(index));
+            } else {
+                hypotheses.write_mean(&mut proposal.start);
+            }
+            proposal.latent.copy_from_slice(&proposal.start);
             proposal.offset.fill(0.0);
             proposal.strains.fill(1.0);
             proposal.look(body, drawn);
             proposal.differentiate(body, &mut self.slopes);
+            proposal.gather(&self.skeleton);
         }
         let noise = self.noise(hypotheses);
         for index in 0..self.count {
-            for step in 0..STEPS {
-                let proposal = &mut self.proposals[index];
-                if step > 0 {
-                    proposal.differentiate(body, &mut self.slopes);
-                }
+            // The slopes hardly change on so short a way, and cost most.
+            for _ in 0..STEPS {
                 self.pull(index, noise);
                 self.proposals[index].look(body, drawn);
             }
@@ -221,21 +237,31 @@ impl Refiner {
     /// What the drawing of a proposal is expected to be off, and what it is off.
     fn expect(&mut self, index: usize, noise: Noise) {
         let proposal = &self.proposals[index];
+        let variance = noise.bone * noise.bone;
+        let entries = proposal.placed.iter().zip(&proposal.bones);
         let covariance = self.gaussian.covariance();
-        covariance.copy_from_slice(&proposal.spread);
-        self.skeleton
-            .add_covariance(noise, &proposal.flat, &proposal.strains, covariance);
+        for (out, (placed, bones)) in covariance.iter_mut().zip(entries) {
+            *out = placed + variance * bones;
+        }
+        let joint = self.skeleton.joint_variance(noise);
+        let size = self.difference.len();
+        covariance
+            .iter_mut()
+            .step_by(size + 1)
+            .for_each(|entry| *entry += joint);
         self.gaussian.factorise();
         proposal.write_difference(self.slopes.rank(), &mut self.difference);
     }
 
     /// Moves a proposal to where it is likeliest, as seen from where it is.
     fn pull(&mut self, index: usize, noise: Noise) {
+        self.proposals[index].gather(&self.skeleton);
         self.expect(index, noise);
         let solved = self.gaussian.solve(&self.difference);
         let proposal = &mut self.proposals[index];
         self.skeleton
             .update_strains(noise, &proposal.flat, solved, &mut proposal.strains);
+        proposal.gather(&self.skeleton);
         self.expect(index, noise);
         let proposal = &mut self.proposals[index];
         proposal.log_weight = self.gaussian.log_density(&self.difference);

@@ -20,8 +20,9 @@ pub(super) struct Slopes {
     arms: Vec<Vec3>,
     /// Derivatives by the code: one `[coefficient_len]` for each of x, y and z.
     by_code: [Vec<f32>; 3],
-    /// Derivatives by the outputs of the layers.
-    by_output: Vec<Vec<f32>>,
+    /// Derivatives of two coordinates by the outputs of the layers.
+    by_output: Vec<[Vec<f32>; 2]>,
+    unused: Vec<f32>,
 }
 
 impl Slopes {
@@ -57,8 +58,9 @@ impl Slopes {
             by_output: head
                 .layers
                 .iter()
-                .map(|layer| vec![0.0; layer.output_len])
+                .map(|layer| [(); 2].map(|()| vec![0.0; layer.output_len]))
                 .collect(),
+            unused: vec![],
         }
     }
 
@@ -93,42 +95,114 @@ impl Slopes {
                     }
                 }
             }
-            for axis in 0..axes {
-                let out = &mut slopes[(joint * axes + axis) * self.rank..][..self.rank];
-                self.back(head, axis, out);
+            let out = &mut slopes[joint * axes * self.rank..][..axes * self.rank];
+            let (along_x, rest) = out.split_at_mut(self.rank);
+            let (along_y, along_z) = rest.split_at_mut(self.rank);
+            self.back(head, [0, 1], [along_x, along_y]);
+            if axes == 3 {
+                // There is no fourth to go with it.
+                self.unused.resize(self.rank, 0.0);
+                let mut unused = std::mem::take(&mut self.unused);
+                self.back(head, [2, 2], [along_z, &mut unused]);
+                self.unused = unused;
             }
         }
     }
 
-    /// From the derivative by the code to that along the ways.
-    fn back(&mut self, head: &Perceptron, axis: usize, out: &mut [f32]) {
+    /// From the derivatives by the code to those along the ways, for two coordinates at once.
+    fn back(&mut self, head: &Perceptron, axes: [usize; 2], outs: [&mut [f32]; 2]) {
         let last = self.by_output.len() - 1;
-        self.by_output[last].copy_from_slice(&self.by_code[axis]);
+        for (by_output, axis) in self.by_output[last].iter_mut().zip(axes) {
+            by_output.copy_from_slice(&self.by_code[axis]);
+        }
         for index in (0..=last).rev() {
             if head.weights().has_relu_after(index) {
-                let slopes = self.by_output[index].iter_mut();
-                for (slope, value) in slopes.zip(head.value(index)) {
-                    if *value <= 0.0 {
-                        *slope = 0.0;
+                for slopes in &mut self.by_output[index] {
+                    for (slope, value) in slopes.iter_mut().zip(head.value(index)) {
+                        if *value <= 0.0 {
+                            *slope = 0.0;
+                        }
                     }
                 }
             }
             if index > 0 {
                 let (before, after) = self.by_output.split_at_mut(index);
-                before[index - 1].fill(0.0);
-                kernels::accumulate(
-                    &after[0],
-                    &self.transposed[index - 1],
-                    &mut before[index - 1],
-                );
+                let [a, b] = &mut before[index - 1];
+                a.fill(0.0);
+                b.fill(0.0);
+                let from = [after[0][0].as_slice(), after[0][1].as_slice()];
+                kernels::accumulate_pair(from, &self.transposed[index - 1], [a, b]);
             }
         }
-        out.fill(0.0);
-        kernels::accumulate(&self.by_output[0], &self.first, out);
+        let [a, b] = outs;
+        a.fill(0.0);
+        b.fill(0.0);
+        let from = [
+            self.by_output[0][0].as_slice(),
+            self.by_output[0][1].as_slice(),
+        ];
+        kernels::accumulate_pair(from, &self.first, [a, b]);
     }
 }
 
 fn transposed(matrix: &[f32], rows: usize, columns: usize) -> Vec<f32> {
     let entry = |i: usize| matrix[(i % rows.max(1)) * columns + i / rows.max(1)];
     (0..rows * columns).map(entry).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::infer::joint_map::JointMap;
+    use crate::synthetic::{Kind, model};
+
+    #[test]
+    fn slopes_are_differences_of_joints() {
+        for kind in [Kind::Basis, Kind::Skinned] {
+            let model = model(kind);
+            let layer = model.final_layer();
+            let latent_len = model.latent_len();
+            let way = |i: usize| (1.7 * i as f32).sin();
+            let ways: Vec<f32> = (0..2 * latent_len).map(way).collect();
+            let JointMap::Linear(rows) = JointMap::new(&model) else {
+                panic!("{kind:?} is linear")
+            };
+            let mut head = Perceptron::new(model.head());
+            let mut scratch = layer.scratch();
+            let mut joints_at = |offset: [f32; 2]| {
+                let latent: Vec<f32> = (0..latent_len)
+                    .map(|i| 0.3 + offset[0] * ways[i] + offset[1] * ways[latent_len + i])
+                    .collect();
+                let mut joints = vec![Vec3::ZERO; model.figure().joint_count()];
+                let code = head.run(&latent);
+                rows.write(layer.features(code, &mut scratch), &mut joints);
+                joints
+            };
+            let step = 1e-3;
+            let differences = [0, 1].map(|way| {
+                let at = |by: f32| {
+                    let mut offset = [0.0; 2];
+                    offset[way] = by;
+                    joints_at(offset)
+                };
+                let (after, before) = (at(step), at(-step));
+                let pairs = after.iter().zip(&before);
+                pairs
+                    .map(|(a, b)| (*a - *b) / (2.0 * step))
+                    .collect::<Vec<_>>()
+            });
+            joints_at([0.0; 2]);
+            let mut slopes = Slopes::new(model.head(), layer, &ways);
+            let mut found = vec![0.0; 3 * differences[0].len() * 2];
+            let features = layer.features(head.output(), &mut scratch).to_vec();
+            slopes.write(&head, layer, &features, &rows, 3, &mut found);
+            for (i, pair) in found.chunks_exact(2).enumerate() {
+                for way in 0..2 {
+                    let expected = differences[way][i / 3][i % 3];
+                    let close = (pair[way] - expected).abs() < 0.02 * expected.abs().max(0.5);
+                    assert!(close, "{kind:?} {i} {way}: {} {expected}", pair[way]);
+                }
+            }
+        }
+    }
 }

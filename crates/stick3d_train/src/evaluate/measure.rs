@@ -37,17 +37,20 @@ enum Answer {
     First,
     /// The one nearest to the truth.
     Best,
+    /// What Encoder2D alone holds for likeliest, not pulled onto the drawing.
+    Plain,
     /// The baseline's.
     Nearest,
 }
 
-const ANSWERS: [Answer; 3] = [Answer::First, Answer::Best, Answer::Nearest];
+const ANSWERS: [Answer; 4] = [Answer::First, Answer::Best, Answer::Plain, Answer::Nearest];
 
 impl Answer {
     fn name(self) -> &'static str {
         match self {
             Self::First => "first answer",
             Self::Best => "best alternative",
+            Self::Plain => "network alone",
             Self::Nearest => "nearest neighbour",
         }
     }
@@ -253,11 +256,17 @@ impl<'a> Bench<'a> {
         let best = answers
             .iter()
             .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let mut latent = vec![0.0; self.inference.latent_len()];
+        self.inference.encode_plain(sketch, &mut latent)?;
+        self.inference
+            .decode_positions(&latent, &mut self.positions)?;
+        let plain: Vec<Vec3> = self.positions.iter().copied().map(Vec3::from).collect();
         for (index, answer) in ANSWERS.iter().enumerate() {
             let nearest;
             let mesh = match answer {
                 Answer::First => answers.first(),
                 Answer::Best => best,
+                Answer::Plain => Some(&plain),
                 Answer::Nearest if self.setup.ways[way].beside_baseline => {
                     nearest = self.setup.baseline.nearest(figure, sketch)?;
                     Some(&nearest)

@@ -12,7 +12,7 @@ use crate::render::contact_sheet;
 
 /// Rows of the picture: as many poses that were seen, and that were not.
 const SEEN: usize = 2;
-const UNSEEN: usize = 3;
+const UNSEEN: usize = 2;
 
 /// A row for each of some sketches: the sketch, the truth, and what each model makes of it.
 pub(super) fn picture(

@@ -14,7 +14,7 @@ use crate::paper::PaperSet;
 use crate::render::{Camera, RenderMesh, draw_sketch, render};
 
 /// Width and height of a cell, pixels.
-pub(super) const CELL_PX: [u32; 2] = [150, 180];
+pub(super) const CELL_PX: [u32; 2] = [140, 170];
 
 /// The yaws of the cameras that see a body from the front and from its left, radians.
 pub(super) const FRONT: f32 = 0.0;
