@@ -1,4 +1,5 @@
-//! A frame of a playing figure allocates nothing: curve, blend, root motion, decoding and the mesh.
+//! A frame of a playing figure allocates nothing: curve, blend, root motion, decoding and the mesh. Nor does one in which a
+//! sketch stays as it is.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -155,4 +156,17 @@ fn a_playing_figure_allocates_nothing() {
     };
     app.add_systems(PostUpdate, allocate.in_set(Stick3dSystems::Encode));
     assert!(allocations(&mut app) >= 60);
+}
+
+#[test]
+fn a_figure_whose_sketch_stays_allocates_nothing() {
+    let mut app = app();
+    let man = app
+        .world_mut()
+        .spawn((StickFigure::human(), pose(0.2)))
+        .id();
+    app.update();
+    let chosen = app.world().get::<SketchAlternatives>(man).unwrap().chosen();
+    assert_eq!(chosen, Some(0));
+    assert_eq!(allocations(&mut app), 0);
 }

@@ -11,6 +11,7 @@ use crate::alternatives::{ChooseAlternative, FlipLimb, SketchAlternatives, choos
 use crate::figure::{FigureStatus, Latent, StickFigure, StickSketch};
 use crate::model_asset::StickModel;
 use crate::schedule::Stick3dSystems;
+use crate::sketch_input::SketchPreview;
 use crate::status::Stick3dStatus;
 use crate::stream::StreamedBody;
 
@@ -181,6 +182,7 @@ fn encode_sketches(
     mut figures: Query<(
         Ref<StickFigure>,
         Option<Ref<StickSketch>>,
+        Has<SketchPreview>,
         &StreamedBody,
         &mut SketchAlternatives,
         &mut Latent,
@@ -189,7 +191,7 @@ fn encode_sketches(
     mut inference: ResMut<StickInference>,
     ticks: SystemChangeTick,
 ) {
-    for (figure, sketch, body, mut alternatives, mut latent, mut status) in &mut figures {
+    for (figure, sketch, is_draft, body, mut alternatives, mut latent, mut status) in &mut figures {
         let Some(ready) = inference.get_mut(&figure.0) else {
             continue;
         };
@@ -205,7 +207,7 @@ fn encode_sketches(
         if let Some(sketch) = sketch
             && (other_model || sketch.is_changed() || alternatives.has_wish())
         {
-            match alternatives.follow(&mut ready.inference, &sketch.points) {
+            match alternatives.follow(&mut ready.inference, &sketch.points, is_draft) {
                 Ok(()) => {
                     if let Some(shown) = alternatives.shown() {
                         latent.0.clone_from(&shown.latent);

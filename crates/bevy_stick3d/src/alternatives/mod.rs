@@ -4,7 +4,6 @@ mod nearness;
 
 use bevy::prelude::*;
 use stick3d_figure::Sketch;
-use stick3d_figure::figure::Limb;
 use stick3d_model::{Alternative, Alternatives, InferError, Inference};
 
 use crate::figure::{Latent, StickFigure};
@@ -13,6 +12,8 @@ use nearness::{farthest_elsewhere_m, is_flipped, is_same_drawing, nearest, turne
 
 /// Joints nearer than this share of the figure's size are where they were.
 const AS_IT_WAS_SHARE: f32 = 0.06;
+/// A body whose joints are farther than this share of its size from where they were, on average, has jumped.
+const MOVED_SHARE: f32 = 0.02;
 
 /// Shows another of the bodies that the sketch may mean. Without effect where there is no such figure or body.
 ///
@@ -44,14 +45,19 @@ pub struct FlipLimb {
 ///
 /// A sketch says nothing about depth: several bodies look like it. The first is taken, until a [`ChooseAlternative`] or a
 /// [`FlipLimb`] says otherwise. Whatever is shown is kept while the sketch changes by little, as when a joint is dragged:
-/// then the body nearest to it is shown, and not the first. Another sketch begins with the first again.
+/// then the body nearest to it is shown, and not the first. Another sketch, or one that is not finished yet, begins with the
+/// first again.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(opaque, Component, Debug, Default, Clone)]
 pub struct SketchAlternatives {
     found: Alternatives,
     /// Of which they are.
     sketch: Option<Sketch>,
+    /// It is unfinished.
+    is_draft: bool,
     shown: Alternative,
+    /// What was shown before; memory that is used again.
+    before: Alternative,
     chosen: Option<usize>,
     wish: Wish,
     choices: u64,
@@ -117,11 +123,12 @@ impl SketchAlternatives {
         self.chosen = None;
     }
 
-    /// Finds the bodies of a sketch, and which to show.
+    /// Finds the bodies of a sketch, and which to show. `is_draft`: it will become another with the next stroke.
     pub(crate) fn follow(
         &mut self,
         inference: &mut Inference,
         points: &[Vec2],
+        is_draft: bool,
     ) -> Result<(), String> {
         let wish = std::mem::take(&mut self.wish);
         let sketch =
@@ -131,13 +138,16 @@ impl SketchAlternatives {
         inference
             .infer(&sketch, &mut self.found)
             .map_err(|error| error.to_string())?;
-        let is_same = before.is_some_and(|before| is_same_drawing(before.points(), points));
-        self.sketch = Some(sketch);
+        let was_draft = std::mem::replace(&mut self.is_draft, is_draft);
+        let is_whole = !is_draft && !was_draft;
+        let is_same =
+            is_whole && before.is_some_and(|before| is_same_drawing(before.points(), points));
         match wish {
             Wish::Body(latent) if self.show_latent(inference, &latent).is_ok() => {}
-            Wish::Same if is_same => self.show_nearest(),
+            Wish::Same if is_same => self.show_nearest(inference, &sketch),
             _ => self.show(0),
         }
+        self.sketch = Some(sketch);
         Ok(())
     }
 
@@ -170,7 +180,7 @@ impl SketchAlternatives {
             return Ok(self.choose(index));
         }
         let mut latent = vec![0.0; inference.latent_len()];
-        flip_limb(inference, sketch, &self.shown.latent, limb, &mut latent)?;
+        inference.flip_limb(sketch, &self.shown.latent, limb, &mut latent)?;
         let before = self.shown.clone();
         self.show_latent(inference, &latent)?;
         let is_done = is_flipped(&before, &self.shown, limb);
@@ -182,9 +192,33 @@ impl SketchAlternatives {
         Ok(is_done)
     }
 
-    fn show_nearest(&mut self) {
+    /// Shows what is nearest to the body shown: one of the bodies, or one of them with limbs turned round as they were.
+    fn show_nearest(&mut self, inference: &mut Inference, sketch: &Sketch) {
         let index = nearest(self.as_slice(), &self.shown, |_| true);
+        std::mem::swap(&mut self.shown, &mut self.before);
         self.show(index.unwrap_or(0));
+        let size_m = inference.figure().template_extent_m();
+        if self.shown.distance_m(&self.before) < MOVED_SHARE * size_m {
+            return;
+        }
+        let mut latent = vec![0.0; inference.latent_len()];
+        for limb in inference.figure().limbs() {
+            if !is_flipped(&self.before, &self.shown, &limb) {
+                continue;
+            }
+            let unturned = self.shown.clone();
+            let turned = inference.flip_limb(sketch, &unturned.latent, &limb, &mut latent);
+            let is_shown = turned.and_then(|()| self.show_latent(inference, &latent));
+            let was_m = unturned.distance_m(&self.before);
+            if is_shown.is_err() || self.shown.distance_m(&self.before) >= was_m {
+                self.shown = unturned;
+                self.chosen = self.index_of(&self.shown.latent);
+            }
+        }
+    }
+
+    fn index_of(&self, latent: &[f32]) -> Option<usize> {
+        self.as_slice().iter().position(|a| a.latent == latent)
     }
 
     fn show(&mut self, index: usize) {
@@ -200,7 +234,7 @@ impl SketchAlternatives {
 
     /// Shows the body of a latent, whether it is one of those that were found or not.
     fn show_latent(&mut self, inference: &mut Inference, latent: &[f32]) -> Result<(), InferError> {
-        if let Some(index) = self.as_slice().iter().position(|a| a.latent == latent) {
+        if let Some(index) = self.index_of(latent) {
             self.show(index);
             return Ok(());
         }
@@ -239,25 +273,4 @@ pub(crate) fn choose_alternatives(
             latent.0.clone_from(&alternatives.shown.latent);
         }
     }
-}
-
-/// Writes the latent of the body that is as `latent`, but for the limb, whose depth is the other way round.
-fn flip_limb(
-    inference: &mut Inference,
-    sketch: &Sketch,
-    latent: &[f32],
-    limb: &Limb,
-    flipped: &mut [f32],
-) -> Result<(), InferError> {
-    let mut shown = Alternative::default();
-    shown.joints = vec![Vec3::ZERO; inference.figure().joint_count()];
-    inference.joints(latent, &mut shown.joints)?;
-    let mut found = Alternatives::default();
-    inference.infer(sketch, &mut found)?;
-    let goal = turned(&shown, limb);
-    let is_flipped = |other: &Alternative| is_flipped(&shown, other, limb);
-    let latent = nearest(found.as_slice(), &goal, is_flipped)
-        .map_or(latent, |index| &found.as_slice()[index].latent);
-    flipped.copy_from_slice(latent);
-    Ok(())
 }

@@ -2,6 +2,7 @@
 
 use bevy_egui::egui::{Rect, pos2, vec2};
 
+use super::gallery::Grid;
 use super::session::Mode;
 use super::theme::GAP;
 
@@ -18,6 +19,10 @@ const TIMELINE_HEIGHT: [f32; 2] = [126.0, 160.0];
 const LEAST_PAIR: f32 = 230.0;
 /// Between them, points.
 const PAIR_GAP: f32 = 12.0;
+/// Between the 3D view and the bodies beside it, points.
+const GALLERY_GAP: f32 = 10.0;
+/// They take at most this share of the view.
+const GALLERY_SHARE: f32 = 0.4;
 
 /// The parts of the window, in egui points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +39,8 @@ pub(super) struct Layout {
     pub(super) tools: Rect,
     /// The 3D view.
     pub(super) view: Rect,
+    /// The bodies that the drawing may mean, beside the view.
+    pub(super) gallery: Option<Rect>,
     /// The timeline along the bottom, of motions.
     pub(super) timeline: Option<Rect>,
 }
@@ -95,8 +102,21 @@ impl Layout {
             pair: (mode == Mode::Animate).then(|| pair(canvas)).flatten(),
             tools,
             view,
+            gallery: None,
             timeline,
         }
+    }
+
+    /// The same with a place for the bodies that the drawing may mean, which the 3D view gives up, if there is room.
+    #[must_use]
+    pub(super) fn with_gallery(mut self) -> Self {
+        let width = Grid::of_height(self.view.height()).width();
+        if width + GALLERY_GAP <= GALLERY_SHARE * self.view.width() {
+            let gallery = self.view.with_min_x(self.view.max.x - width);
+            self.view.max.x = gallery.min.x - GALLERY_GAP;
+            self.gallery = Some(gallery);
+        }
+        self
     }
 }
 
@@ -131,9 +151,14 @@ mod tests {
             .flat_map(|size| [(size, Mode::Pose), (size, Mode::Animate)])
         {
             let window = Rect::from_min_size(pos2(0.0, 0.0), vec2(width, height));
-            let layout = Layout::of(window, 200.0, mode);
+            let mut layout = Layout::of(window, 200.0, mode);
+            if mode == Mode::Pose {
+                layout = layout.with_gallery();
+                assert!(layout.gallery.is_some() || width < 300.0, "{window:?}");
+            }
             let mut parts = vec![layout.choices, layout.files, layout.tools, layout.view];
             parts.extend(layout.timeline);
+            parts.extend(layout.gallery);
             match layout.pair {
                 Some(pair) => parts.extend(pair),
                 None => parts.push(layout.canvas),

@@ -7,10 +7,12 @@
 
 mod canvas;
 mod files;
+mod gallery;
 mod header;
 mod layout;
 mod orbit;
 mod panels;
+mod picking;
 mod screen;
 mod segments;
 mod session;

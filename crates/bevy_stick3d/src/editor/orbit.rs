@@ -128,17 +128,16 @@ pub(super) fn camera_transform(orbit: &Orbit, framing: &Framing, aspect: f32) ->
     Transform::from_translation(eye.with_y(eye.y.max(0.05))).with_rotation(rotation)
 }
 
+/// Where a point is on a view of `aspect` = width / height: -1..1 both ways, y up. None behind the camera.
+pub(super) fn on_view(point: Vec3, camera: &Transform, aspect: f32) -> Option<Vec2> {
+    let p = camera.compute_affine().inverse().transform_point3(point);
+    let tan = (FOV_Y_RAD / 2.0).tan();
+    (p.z < 0.0).then(|| Vec2::new(p.x / (-p.z * tan * aspect), p.y / (-p.z * tan)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Where a point is on the view, -1..1 both ways.
-    fn on_view(point: Vec3, camera: &Transform, aspect: f32) -> Vec2 {
-        let p = camera.compute_affine().inverse().transform_point3(point);
-        assert!(p.z < 0.0, "behind the camera");
-        let tan = (FOV_Y_RAD / 2.0).tan();
-        Vec2::new(p.x / (-p.z * tan * aspect), p.y / (-p.z * tan))
-    }
 
     #[test]
     fn every_corner_is_framed_from_everywhere() {
@@ -156,7 +155,12 @@ mod tests {
                     let camera = camera_transform(&orbit, &box_, aspect);
                     let largest = box_
                         .corners()
-                        .map(|corner| on_view(corner, &camera, aspect).abs().max_element())
+                        .map(|corner| {
+                            on_view(corner, &camera, aspect)
+                                .unwrap()
+                                .abs()
+                                .max_element()
+                        })
                         .fold(0.0, f32::max);
                     assert!(largest < FILL + 0.01, "corner at {largest}");
                     assert!(largest > FILL - 0.15, "too far away: {largest}");

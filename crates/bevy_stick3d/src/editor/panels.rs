@@ -1,8 +1,9 @@
 //! The parts of the window that are not paper: tools, status line, and the frame of the 3D view.
 
 use bevy_egui::egui::{
-    self, Align, Align2, Button, Color32, CornerRadius, Key, KeyboardShortcut, Layout, Modifiers,
-    Rect, RichText, Sense, Stroke, StrokeKind, TextEdit, Ui, UiBuilder, load::SizedTexture, vec2,
+    self, Align, Align2, Button, Color32, CornerRadius, FocusDirection, Key, KeyboardShortcut,
+    Layout, Modifiers, Rect, RichText, Sense, Stroke, StrokeKind, TextEdit, Ui, UiBuilder,
+    load::SizedTexture, vec2,
 };
 
 use super::session::{Action, Mode, Session};
@@ -76,6 +77,25 @@ pub(super) fn shortcut(ctx: &egui::Context, session: &Session) -> Option<Action>
                     .then(|| controls::shortcut(input, choice))
                     .flatten()
             })
+    })
+}
+
+/// Tab and Shift+Tab go through the bodies that a drawing may mean, and not through the buttons, unless somebody is typing.
+pub(super) fn tab(ctx: &egui::Context, session: &Session) -> Option<Action> {
+    if session.mode() != Mode::Pose || ctx.egui_wants_keyboard_input() {
+        return None;
+    }
+    let keys = [
+        (Modifiers::SHIFT, Action::LastAlternative),
+        (Modifiers::NONE, Action::NextAlternative),
+    ];
+    let asked = ctx.input_mut(|input| {
+        let mut keys = keys.into_iter();
+        keys.find(|(modifiers, _)| input.consume_key(*modifiers, Key::Tab))
+    });
+    asked.map(|(_, action)| {
+        ctx.memory_mut(|memory| memory.move_focus(FocusDirection::None));
+        action
     })
 }
 
@@ -247,6 +267,10 @@ pub(super) struct ViewInput {
     pub(super) scroll: f32,
     /// Back to the first view.
     pub(super) reset: bool,
+    /// Where the pointer is over it without dragging,
+    pub(super) hover: Option<egui::Pos2>,
+    /// and whether it clicked there.
+    pub(super) is_click: bool,
 }
 
 /// The 3D view in its frame.
@@ -255,6 +279,7 @@ pub(super) fn view(
     rect: Rect,
     texture: egui::TextureId,
     note: Option<&str>,
+    help: &[&str],
 ) -> ViewInput {
     let corners = CornerRadius::from(theme::CARD_RADIUS);
     ui.painter().add(theme::CARD_SHADOW.as_shape(rect, corners));
@@ -276,12 +301,14 @@ pub(super) fn view(
             theme::faded(theme::INK, 0.45),
         );
     }
-    let help = ui.painter().layout_no_wrap(
-        "Drag to turn, scroll to zoom, double-click to reset".to_owned(),
-        theme::small(),
-        theme::faded(theme::INK, 0.55),
-    );
-    if help.size().x < rect.width() - 24.0 {
+    // The longest that has room.
+    let ink = theme::faded(theme::INK, 0.55);
+    let layout = |help: &&str| {
+        ui.painter()
+            .layout_no_wrap((*help).to_owned(), theme::small(), ink)
+    };
+    let mut helps = help.iter().map(layout);
+    if let Some(help) = helps.find(|help| help.size().x < rect.width() - 24.0) {
         let at = rect.center_bottom() - vec2(help.size().x / 2.0, 16.0 + help.size().y);
         ui.painter().galley(at, help, theme::INK);
     }
@@ -299,6 +326,8 @@ pub(super) fn view(
         drag: response.drag_delta(),
         scroll,
         reset: response.double_clicked(),
+        hover: response.hover_pos().filter(|_| !response.dragged()),
+        is_click: response.clicked(),
     }
 }
 
@@ -321,4 +350,41 @@ pub(super) fn drop_hint(ui: &Ui, canvas: Rect) {
         theme::headline(),
         theme::ACCENT,
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_egui::egui::{Event, RawInput};
+
+    use super::*;
+
+    #[test]
+    fn tab_goes_through_the_bodies_and_not_through_the_buttons() {
+        let ctx = egui::Context::default();
+        let press = |key, modifiers| {
+            let event = Event::Key {
+                key,
+                physical_key: None,
+                pressed: true,
+                repeat: false,
+                modifiers,
+            };
+            ctx.begin_pass(RawInput {
+                events: vec![event],
+                modifiers,
+                ..RawInput::default()
+            });
+            let asked = tab(&ctx, &Session::default());
+            let button = Ui::new(ctx.clone(), "test".into(), UiBuilder::new()).button("Undo");
+            let _ = ctx.end_pass();
+            assert!(!button.has_focus());
+            asked
+        };
+        let next = Some(Action::NextAlternative);
+        assert_eq!(press(Key::Tab, Modifiers::NONE), next);
+        assert_eq!(press(Key::Tab, Modifiers::NONE), next);
+        let last = Some(Action::LastAlternative);
+        assert_eq!(press(Key::Tab, Modifiers::SHIFT), last);
+        assert_eq!(press(Key::M, Modifiers::NONE), None);
+    }
 }

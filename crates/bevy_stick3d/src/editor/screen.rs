@@ -1,5 +1,6 @@
 //! What is in the window, from frame to frame: the parts laid out, painted, and asked what the user wants.
 
+use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, egui};
 
@@ -9,11 +10,12 @@ use super::panels::{self, ViewInput};
 use super::session::{Action, Desk, Mode};
 use super::status_line::StatusLine;
 use super::timeline::{controls, track};
-use super::viewport::View;
-use super::{EditorClock, orbit, switch, theme, words};
+use super::viewport::{View, ViewCamera};
+use super::{EditorClock, gallery, orbit, picking, switch, theme, words};
 use crate::figure::{FigureStatus, StickFigure};
 use crate::sketch_input::{CanvasArea, SketchCanvas, SketchDrawing};
 use crate::status::Stick3dStatus;
+use crate::stream::StreamedBody;
 
 /// Lays the window out, paints it, and does what the user asks.
 pub(super) fn show(
@@ -21,6 +23,7 @@ pub(super) fn show(
     mut desk: Desk,
     mut view: ResMut<View>,
     bodies: Query<(&StickFigure, &FigureStatus)>,
+    stage: Stage,
     models: Res<Stick3dStatus>,
     clock: Res<EditorClock>,
     mut is_dressed: Local<bool>,
@@ -42,7 +45,8 @@ pub(super) fn show(
     );
     // First what the user asks, then the painting, so that all parts of the window show the same.
     let view_now = lay_out(&ui, window, &desk).view;
-    let switched = controls::mode_switch(ctx, view_now, desk.session.mode());
+    let tab = panels::tab(ctx, &desk.session);
+    let switched = controls::mode_switch(ctx, view_now, desk.session.mode()).or(tab);
     if let Some(action) = switched.or_else(|| panels::shortcut(ctx, &desk.session)) {
         desk.act(action);
     }
@@ -58,7 +62,15 @@ pub(super) fn show(
         panels::drop_hint(&ui, layout.canvas);
     }
     let note = is_blank.then_some("The body appears here");
-    let input = panels::view(&mut ui, layout.view, view.texture, note);
+    let help = view_help(layout.gallery.is_some());
+    let input = panels::view(&mut ui, layout.view, view.texture, note, help);
+    let limb = limb_under(&desk, &stage, layout.view, input.hover);
+    if limb.is_some() {
+        ctx.set_cursor_icon(egui::CursorIcon::PointingHand);
+    }
+    if let Some(joint) = limb.filter(|_| input.is_click) {
+        desk.act(Action::Flip(joint));
+    }
     let size_px = layout.view.size() * ctx.pixels_per_point();
     view.set_size(UVec2::new(size_px.x as u32, size_px.y as u32));
     if let Some(mut edited) = desk.edited_mut()
@@ -71,7 +83,52 @@ pub(super) fn show(
 
 fn lay_out(ui: &egui::Ui, window: egui::Rect, desk: &Desk) -> Layout {
     let choices_width = switch::width(ui, desk.session.choices());
-    Layout::of(window, choices_width, desk.session.mode())
+    let layout = Layout::of(window, choices_width, desk.session.mode());
+    match (desk.session.mode(), desk.alternatives()) {
+        (Mode::Pose, Some(_)) => layout.with_gallery(),
+        _ => layout,
+    }
+}
+
+/// Where the body that is shown stands, and who looks at it.
+#[derive(SystemParam)]
+pub(super) struct Stage<'w, 's> {
+    bodies: Query<'w, 's, (&'static StreamedBody, &'static Transform)>,
+    cameras: Query<'w, 's, &'static Transform, With<ViewCamera>>,
+}
+
+/// The end of the limb of the body under the pointer.
+fn limb_under(
+    desk: &Desk,
+    stage: &Stage,
+    view: egui::Rect,
+    at: Option<egui::Pos2>,
+) -> Option<usize> {
+    let choice = desk.session.choice()?;
+    if desk.session.mode() != Mode::Pose {
+        return None;
+    }
+    let shown = desk.alternatives()?.shown()?;
+    let (body, transform) = stage.bodies.get(choice.body).ok()?;
+    let raised = Vec3::Y * body.root_height_m();
+    let joints = shown.joints.iter();
+    let joints: Vec<Vec3> = joints
+        .map(|joint| transform.transform_point(*joint + raised))
+        .collect();
+    let camera = stage.cameras.single().ok()?;
+    picking::limb_at(choice.figure.figure(), &joints, camera, view, at?)
+}
+
+/// What can be done with the 3D view, in more and in fewer words.
+fn view_help(has_body: bool) -> &'static [&'static str] {
+    if has_body {
+        &[
+            "Drag to turn, scroll to zoom. Click a limb to turn its depth round",
+            "Drag to turn, click a limb to turn it round",
+        ]
+    } else {
+        &["Drag to turn, scroll to zoom, double-click to reset"]
+    }
 }
 
 fn asked_of_panels(ui: &mut egui::Ui, layout: &Layout, desk: &mut Desk) -> Option<Action> {
@@ -99,8 +156,15 @@ fn asked_of_panels(ui: &mut egui::Ui, layout: &Layout, desk: &mut Desk) -> Optio
         let of_controls = controls::show(ui, row, choice, desk.session.shows_ghosts);
         track::show(ui, below, choice).or(of_controls)
     });
+    let of_gallery = layout
+        .gallery
+        .and_then(|rect| gallery::show(ui, rect, choice.figure.figure(), desk.alternatives()?));
     desk.session.set_file(file);
-    chosen.or(of_tools).or(of_file).or(of_timeline)
+    chosen
+        .or(of_tools)
+        .or(of_file)
+        .or(of_timeline)
+        .or(of_gallery)
 }
 
 /// Paints the drawings, and says whether nothing is drawn at all.

@@ -29,7 +29,7 @@ pub(super) fn next_step(drawing: &SketchDrawing) -> Words {
 
 fn finished(drawing: &SketchDrawing) -> (String, &'static str) {
     let Some(joint) = drawing.dragged().or(drawing.hovered()) else {
-        let hint = "Click a joint to pin it. X swaps left and right, M mirrors, Esc starts over.";
+        let hint = "Click a joint to pin it, a bone to turn its limb's depth round. X swaps left and right.";
         return ("Drag any joint".to_owned(), hint);
     };
     let headline = format!("Drag the {}", joint_words(drawing.figure(), joint));

@@ -18,8 +18,8 @@ pub const CANVAS_SIZE: f32 = 1000.0;
 /// # What it does
 /// Strokes become a [`StickSketch`](crate::StickSketch) on the [`figure`](SketchCanvas::figure), in any order unless
 /// [`order`](SketchCanvas::order) says otherwise. After that the joints can be dragged: bones keep their lengths,
-/// unless Alt is held. A click on a joint pins it, a stroke draws a limb anew. It needs Bevy's pointers
-/// (`bevy_picking`, in the default plugins of most apps).
+/// unless Alt is held. A click on a joint pins it, a click on a bone [flips its limb](crate::FlipLimb), a stroke draws a
+/// limb anew. It needs Bevy's pointers (`bevy_picking`, in the default plugins of most apps).
 ///
 /// # Canvas units
 /// The origin is in the middle, x goes right, **y up**, and the shorter side is [`CANVAS_SIZE`] units long,

@@ -31,6 +31,8 @@ pub enum DrawingChange {
     Completed(Vec<Vec2>),
     /// The joints are others than before.
     Redrawn,
+    /// A limb of the finished sketch was clicked: its last joint.
+    LimbClicked(usize),
 }
 
 /// What is on a canvas, in canvas units: what undo brings back.

@@ -22,6 +22,7 @@ use canvas::nearest_on_canvas;
 pub use drawing::{DrawingChange, DrawingOrder, GRAB_RADIUS, Ink, SketchDrawing};
 pub use guide::fit_to_canvas;
 
+use crate::alternatives::FlipLimb;
 use crate::figure::{StickFigure, StickSketch};
 use crate::model_asset::StickModel;
 use crate::schedule::Stick3dSystems;
@@ -37,6 +38,7 @@ impl Plugin for Stick3dSketchInputPlugin {
             .add_message::<StrokeUndone>()
             .add_message::<SketchChanged>()
             .add_message::<SketchCompleted>()
+            .add_message::<FlipLimb>()
             .register_type::<SketchCanvas>()
             .register_type::<SketchDrawing>()
             .register_type::<DrawingOrder>()
@@ -200,6 +202,7 @@ fn tell_changes(
     mut undone: MessageWriter<StrokeUndone>,
     mut changed: MessageWriter<SketchChanged>,
     mut completed: MessageWriter<SketchCompleted>,
+    mut flips: MessageWriter<FlipLimb>,
 ) {
     for (canvas, settings, mut drawing) in &mut canvases {
         let changes = drawing.bypass_change_detection().take_changes();
@@ -222,6 +225,9 @@ fn tell_changes(
                     completed.write(event);
                 }
                 DrawingChange::Redrawn => redrawn = true,
+                DrawingChange::LimbClicked(joint) => {
+                    flips.write_batch(settings.figure.map(|figure| FlipLimb { figure, joint }));
+                }
             }
         }
         if redrawn {

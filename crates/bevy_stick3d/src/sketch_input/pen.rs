@@ -1,7 +1,9 @@
 //! What the pen does to a drawing: strokes, joints in hand, pins by a click.
 
 use bevy::math::Vec2;
-use stick3d_figure::edit::{Grip, bone_lengths, distance_to_line, nearest_joint, redrawn};
+use stick3d_figure::edit::{
+    Grip, bone_lengths, distance_to_line, nearest_bone, nearest_joint, redrawn,
+};
 use stick3d_figure::{Drag, Pen, Sketch, Stroke, is_scribble, progress};
 
 use super::drawing::{DrawingChange, DrawingOrder, GRAB_RADIUS, Ink, SketchDrawing};
@@ -197,7 +199,7 @@ impl SketchDrawing {
 
     fn finish_stroke(&mut self, stroke: Stroke) {
         if stroke.length_px() < SLIP {
-            return;
+            return self.click_limb(&stroke);
         }
         if is_scribble(&stroke, &self.lines()) {
             self.undo();
@@ -217,6 +219,18 @@ impl SketchDrawing {
             .filter(|_| reading.progress.complete)
             .and_then(|points| Sketch::new(&self.figure, points).ok());
         self.step(ink, Some(reading));
+    }
+
+    /// A slip of the pen on a bone of a finished sketch is a click on its limb.
+    fn click_limb(&mut self, slip: &Stroke) {
+        let (Some(sketch), Some(at)) = (&self.ink.sketch, slip.positions().next()) else {
+            return;
+        };
+        let bone = nearest_bone(&self.figure, sketch.points(), at, GRAB_RADIUS);
+        if let Some(limb) = bone.and_then(|bone| self.figure.limb_of_bone(self.figure.bones[bone]))
+        {
+            self.changes.push(DrawingChange::LimbClicked(limb.end()));
+        }
     }
 
     /// A stroke over a finished sketch: the rest of a limb that looked finished, or a limb drawn anew. Other strokes
@@ -366,6 +380,25 @@ mod tests {
         assert!(drawing.mirror());
         let other = Figure::human().mirror_of(joint);
         assert!(drawing.pins()[other] && !drawing.pins()[joint]);
+    }
+
+    #[test]
+    fn a_click_on_a_bone_tells_its_limb() {
+        let mut drawing = loaded();
+        let ((_, elbow), (hand, end)) = (at(&drawing, "elbow_r"), at(&drawing, "hand_r"));
+        let before = drawing.sketch().unwrap().clone();
+        let mut click = |at: Vec2| {
+            drawing.take_changes();
+            drawing.press(at, 0.0);
+            drawing.move_to(at + Vec2::ONE, 0.0);
+            drawing.release();
+            drawing.take_changes()
+        };
+        let forearm = elbow.midpoint(end);
+        assert_eq!(click(forearm), [DrawingChange::LimbClicked(hand)]);
+        assert_eq!(click(Vec2::new(-450.0, 0.0)), [], "beside the figure");
+        assert_eq!(drawing.sketch(), Some(&before));
+        assert!(drawing.pins().iter().all(|is_pinned| !is_pinned));
     }
 
     #[test]

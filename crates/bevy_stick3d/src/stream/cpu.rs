@@ -42,6 +42,8 @@ pub(crate) struct BodyBounds {
     pub(crate) low: Vec3,
     /// The largest coordinates.
     pub(crate) high: Vec3,
+    /// How high the root joint is.
+    pub(crate) root_height_m: f32,
 }
 
 /// Whether a latent can be decoded at all.
@@ -79,6 +81,7 @@ pub(crate) fn write_body(
         }
         bounds.low.y = lowest_m;
         bounds.high.y += lift_m;
+        bounds.root_height_m = lift_m;
     }
     Ok(bounds)
 }
@@ -107,6 +110,7 @@ fn bounds_of(positions: &[[f32; 3]]) -> BodyBounds {
     let mut bounds = BodyBounds {
         low: first,
         high: first,
+        root_height_m: 0.0,
     };
     for &position in positions {
         bounds.low = bounds.low.min(Vec3::from(position));

@@ -34,6 +34,7 @@ pub struct StreamedBody {
     stale: bool,
     /// How high the lowest vertex is while grounded, metres.
     lift_m: f32,
+    root_height_m: f32,
 }
 
 impl StreamedBody {
@@ -56,6 +57,12 @@ impl StreamedBody {
     /// [`DecodeOutOfSight`](crate::animation::DecodeOutOfSight).
     pub fn is_stale(&self) -> bool {
         self.stale
+    }
+
+    /// How high the figure's root joint is above the entity's origin, metres; 0 unless the figure is
+    /// [grounded](Grounded).
+    pub fn root_height_m(&self) -> f32 {
+        self.root_height_m
     }
 
     /// Whether the last latent could not be decoded.
@@ -145,6 +152,7 @@ fn stream_bodies(
             .and_then(|mesh| show(ready, &latent, grounded.0.then_some(lift_m), mesh));
         match shown {
             Ok(bounds) => {
+                body.root_height_m = bounds.root_height_m;
                 let bounds = Aabb::from_min_max(bounds.low, bounds.high);
                 match aabb {
                     Some(mut aabb) => *aabb = bounds,

@@ -40,6 +40,11 @@ impl<T: Clone + PartialEq> History<T> {
         self.undone.clear();
     }
 
+    /// Makes `state` the present in place of what that was: no step, and what was undone can still be done again.
+    pub fn amend(&mut self, state: T) {
+        self.present = state;
+    }
+
     /// One step back: the state then, or none at the beginning.
     pub fn undo(&mut self) -> Option<&T> {
         let earlier = self.past.pop()?;
@@ -94,6 +99,19 @@ mod tests {
             }
             prop_assert_eq!(Some(history.present()), distinct.last());
             prop_assert!(!history.can_redo());
+        }
+
+        #[test]
+        fn an_amended_state_is_no_step(steps in 1usize..6, back in 0usize..6) {
+            let mut history = History::new(0, 100);
+            for state in 1..=steps {
+                history.push(state);
+            }
+            let back = (0..back).filter(|_| history.undo().is_some()).count();
+            history.amend(99);
+            prop_assert_eq!(*history.present(), 99);
+            prop_assert_eq!(history.can_redo(), back > 0);
+            prop_assert_eq!(history.undo().copied(), (steps - back).checked_sub(1));
         }
 
         #[test]

@@ -48,6 +48,13 @@ impl Figure {
         };
         ends.map(chain).collect()
     }
+
+    /// The limb that a bone, two joints in any order, is of; none of the trunk's bones are of any.
+    pub fn limb_of_bone(&self, bone: [usize; 2]) -> Option<Limb> {
+        let has = |limb: &Limb, joint| limb.base == joint || limb.joints.contains(&joint);
+        let mut limbs = self.limbs().into_iter();
+        limbs.find(|limb| bone.iter().all(|joint| has(limb, *joint)))
+    }
 }
 
 #[cfg(test)]
@@ -73,6 +80,19 @@ mod tests {
         );
         assert!(limbs.contains(&arm), "{limbs:?}");
         assert!(limbs.contains(&("neck".to_owned(), vec!["forehead".to_owned()])));
+    }
+
+    #[test]
+    fn a_bone_is_of_a_limb_or_of_the_trunk() {
+        let human = Figure::human();
+        let limb_of = |bone: [&str; 2]| {
+            let bone = bone.map(|name| human.joint_index(name).unwrap());
+            human.limb_of_bone(bone).map(|limb| limb.end())
+        };
+        let hand = human.joint_index("hand_r").ok();
+        assert_eq!(limb_of(["elbow_r", "neck"]), hand);
+        assert_eq!(limb_of(["elbow_r", "hand_r"]), hand);
+        assert_eq!(limb_of(["neck", "abdomen"]), None);
     }
 
     #[test]

@@ -7,11 +7,13 @@ use super::super::timeline::clip::drawing_beside;
 use super::super::timeline::history::Change;
 use super::super::timeline::state::KeyId;
 use super::super::viewport::EditedFigure;
+use super::bodies::Bodies;
 use super::settle::{Canvases, look_at_selected};
 use super::{Action, Choice, Mode, Session};
 use crate::figure::StickFigure;
 use crate::inference::{ReadyModel, StickInference};
 use crate::sketch_input::{DrawingOrder, Ink, SketchCanvas, SketchDrawing};
+use crate::{ChooseAlternative, FlipLimb};
 
 /// The session with its drawings: what carries out what the user asks.
 #[derive(SystemParam)]
@@ -20,6 +22,9 @@ pub(in super::super) struct Desk<'w, 's> {
     pub(in super::super) session: ResMut<'w, Session>,
     pub(super) canvases: Canvases<'w, 's>,
     pub(super) figures: Query<'w, 's, &'static mut EditedFigure>,
+    pub(super) bodies: Bodies<'w, 's>,
+    pub(super) choose: MessageWriter<'w, ChooseAlternative>,
+    pub(super) flips: MessageWriter<'w, FlipLimb>,
     models: Query<'w, 's, &'static StickFigure>,
     inference: ResMut<'w, StickInference>,
 }
@@ -81,6 +86,10 @@ impl Desk<'_, '_> {
             Action::Undo | Action::Redo => self.step_in_history(action == Action::Undo),
             Action::Mirror | Action::SwapSides | Action::Clear => self.change_drawing(action),
             Action::Order => self.change_order(),
+            Action::Alternative(_) | Action::NextAlternative | Action::LastAlternative => {
+                self.choose_body(action);
+            }
+            Action::Flip(joint) => self.flip(joint),
             Action::Ghosts => self.session.shows_ghosts ^= true,
             Action::KeyHere => self.key_here(),
             Action::Export => self.export(),
@@ -123,6 +132,7 @@ impl Desk<'_, '_> {
         };
         choice.is_key_in_hand = false;
         look_at_selected(choice);
+        choice.recall_body(&mut self.bodies);
         self.lay_out(false);
         if change == Some(Change::Timeline) {
             self.switch(Mode::Animate);

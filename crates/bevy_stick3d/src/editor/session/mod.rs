@@ -1,6 +1,7 @@
 //! What the editor remembers: the figures to choose from, what is drawn of each, their files, the status line.
 //! Knows no user interface.
 
+mod bodies;
 mod desk;
 mod export;
 mod open;
@@ -101,6 +102,12 @@ pub(super) enum Action {
     SwapSides,
     /// In any order, or along the path.
     Order,
+    /// Another of the bodies that the drawing may mean.
+    Alternative(usize),
+    NextAlternative,
+    LastAlternative,
+    /// Turns the depth of the limb of a joint round.
+    Flip(usize),
     Clear,
     Save,
     Open,
@@ -186,6 +193,8 @@ pub(super) struct Choice {
     pub(super) player: Player,
     /// What is made of what was drawn.
     pub(super) performance: Performance,
+    /// How often its body was chosen, as far as the document knows.
+    body_choices: u64,
     /// A joint is being dragged.
     is_joint_in_hand: bool,
     /// A key is being dragged in time.
@@ -312,7 +321,8 @@ impl Plugin for SessionPlugin {
                     settle_drawings
                         .in_set(SettleDrawings)
                         .before(Stick3dSystems::Tell),
-                    perform
+                    (bodies::is_flip_asked.pipe(bodies::settle_bodies), perform)
+                        .chain()
                         .after(Stick3dSystems::Encode)
                         .before(Stick3dSystems::Decode),
                 ),
@@ -361,6 +371,7 @@ fn spawn_choices(
             document: Document::default(),
             player: Player::default(),
             performance: Performance::default(),
+            body_choices: 0,
             is_joint_in_hand: false,
             is_key_in_hand: false,
         };

@@ -35,7 +35,10 @@ impl Desk<'_, '_> {
         for (index, choice) in self.session.choices.iter_mut().enumerate() {
             let is_shown = index == active;
             if is_shown || is_anew {
-                lay_out_choice(choice, mode, is_shown, is_anew, &mut self.canvases);
+                let is_other = lay_out_choice(choice, mode, is_shown, is_anew, &mut self.canvases);
+                if is_other {
+                    choice.recall_body(&mut self.bodies);
+                }
             }
             if let Ok(mut edited) = self.figures.get_mut(choice.body)
                 && edited.is_shown != is_shown
@@ -145,13 +148,15 @@ fn keys_to_show(choice: &Choice, mode: Mode) -> [Option<KeyId>; 2] {
     [keys.get(to - 1), keys.get(to)].map(|key| key.map(|key| key.id))
 }
 
+/// Says whether the body follows another drawing now.
 fn lay_out_choice(
     choice: &mut Choice,
     mode: Mode,
     is_shown: bool,
     is_anew: bool,
     canvases: &mut Canvases,
-) {
+) -> bool {
+    let mut is_other_body = is_anew;
     let keys = keys_to_show(choice, mode);
     let document = &choice.document;
     for (slot, key) in choice.slots.iter_mut().zip(keys) {
@@ -168,6 +173,7 @@ fn lay_out_choice(
             canvas.figure = figure;
         }
         let is_other = slot.key != key;
+        is_other_body |= poses_now || (is_other && figure.is_some());
         slot.key = key;
         let ink = key.and_then(|id| document.scene().key(id));
         let ink = ink.map_or(Ink::default(), |key| key.ink.clone());
@@ -178,4 +184,5 @@ fn lay_out_choice(
             drawing.put_ink(ink);
         }
     }
+    is_other_body
 }

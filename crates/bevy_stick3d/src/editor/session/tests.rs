@@ -1,6 +1,7 @@
 //! The editor without a screen.
 
 mod animation;
+mod bodies;
 
 use std::path::Path;
 use std::time::Duration;

@@ -10,7 +10,7 @@ const MAX_UNDO: usize = 200;
 /// What a step of the history changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Change {
-    /// Only the drawing of a key.
+    /// Only the drawing of a key, or the body that is shown of it.
     Drawing(KeyId),
     /// Keys, times, or how they become a motion.
     Timeline,
@@ -73,6 +73,11 @@ impl Document {
         self.keep_selected(0);
     }
 
+    /// Makes what is shown the last step, in place of what that was: it followed from it by itself.
+    pub(crate) fn amend(&mut self) {
+        self.history.amend(self.scene.clone());
+    }
+
     /// As [`Document::commit`], when what is shown may be what was there one step before: then that step is undone.
     pub(crate) fn commit_taken_back(&mut self) {
         let mut back = self.history.clone();
@@ -124,6 +129,7 @@ impl Document {
         let mut without_ink = before.clone();
         for key in self.scene.keys() {
             without_ink.set_ink(key.id, key.ink.clone());
+            without_ink.set_body(key.id, key.body.clone());
         }
         let same_otherwise = without_ink.keys() == self.scene.keys()
             && without_ink.settings() == self.scene.settings();

@@ -6,22 +6,36 @@ use stick3d_model::latent::{Easing, MotionSettings, PathError};
 use stick3d_model::{LatentKey, LatentPath, Motion};
 
 use super::player::Course;
-use super::state::{KeyId, Scene};
+use super::state::{ChosenBody, KeyId, Scene};
 use crate::inference::ReadyModel;
+
+/// A drawn key.
+#[derive(Clone, Debug, PartialEq)]
+struct SourceKey {
+    id: KeyId,
+    time_s: f32,
+    easing: Easing,
+    sketch: Sketch,
+    body: Option<ChosenBody>,
+}
 
 /// What a motion was made of: it is made again when this is another.
 #[derive(Clone, Debug, PartialEq)]
 struct Source {
-    keys: Vec<(KeyId, f32, Easing, Sketch)>,
+    keys: Vec<SourceKey>,
     settings: MotionSettings,
     generation: u64,
 }
 
 impl Source {
     fn of(scene: &Scene, generation: u64) -> Self {
-        let keys = scene
-            .complete()
-            .map(|(key, sketch)| (key.id, key.time_s, key.easing, sketch.clone()));
+        let keys = scene.complete().map(|(key, sketch)| SourceKey {
+            id: key.id,
+            time_s: key.time_s,
+            easing: key.easing,
+            sketch: sketch.clone(),
+            body: key.body.clone(),
+        });
         Self {
             keys: keys.collect(),
             settings: scene.settings(),
@@ -82,18 +96,25 @@ impl Performance {
         is_in_hand: bool,
     ) -> Result<(), String> {
         self.latents.clear();
-        for (id, time_s, _, sketch) in &source.keys {
-            let latent = ready.encode(sketch).map_err(|error| error.to_string())?;
-            self.latents.push((*id, *time_s, latent.to_vec()));
+        for key in &source.keys {
+            let latent_len = ready.inference.latent_len();
+            let body = key.body.as_deref().filter(|body| body.len() == latent_len);
+            let latent = match body {
+                Some(body) => body,
+                None => ready
+                    .encode(&key.sketch)
+                    .map_err(|error| error.to_string())?,
+            };
+            self.latents.push((key.id, key.time_s, latent.to_vec()));
         }
         let keys: Vec<LatentKey> = source
             .keys
             .iter()
             .zip(&self.latents)
-            .map(|((_, time_s, easing, _), (.., latent))| LatentKey {
+            .map(|(key, (.., latent))| LatentKey {
                 latent: latent.clone(),
-                time_s: *time_s,
-                easing: *easing,
+                time_s: key.time_s,
+                easing: key.easing,
             })
             .collect();
         let settings = source.settings;

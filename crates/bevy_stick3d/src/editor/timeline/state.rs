@@ -1,5 +1,7 @@
 //! The keys of a motion and how they are edited: pure, without any history.
 
+use std::sync::Arc;
+
 use stick3d_figure::Sketch;
 use stick3d_model::latent::{Easing, Interpolation, MotionSettings, Repeat};
 
@@ -18,6 +20,9 @@ const FIRST_GAP_S: f32 = 1.0;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct KeyId(u32);
 
+/// The latent of a body that was chosen among those that a drawing may mean.
+pub(crate) type ChosenBody = Arc<[f32]>;
+
 /// One drawing at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Key {
@@ -27,6 +32,8 @@ pub(crate) struct Key {
     pub(crate) easing: Easing,
     /// What was drawn so far.
     pub(crate) ink: Ink,
+    /// The body that is shown of the sketch; `None` for the first.
+    pub(crate) body: Option<ChosenBody>,
 }
 
 impl Key {
@@ -118,6 +125,13 @@ impl Scene {
     pub(crate) fn set_ink(&mut self, id: KeyId, ink: Ink) {
         if let Some(key) = self.key_mut(id) {
             key.ink = ink;
+            key.body = key.body.take().filter(|_| key.ink.sketch.is_some());
+        }
+    }
+
+    pub(crate) fn set_body(&mut self, id: KeyId, body: Option<ChosenBody>) {
+        if let Some(key) = self.key_mut(id) {
+            key.body = body;
         }
     }
 
@@ -198,6 +212,7 @@ impl Scene {
             time_s,
             easing,
             ink,
+            body: None,
         });
         id
     }

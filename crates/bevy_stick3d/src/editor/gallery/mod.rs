@@ -1,0 +1,198 @@
+//! The bodies that the drawing may mean: little pictures beside the 3D view, one of them chosen.
+
+mod picture;
+
+use bevy_egui::egui::{
+    self, Align2, CornerRadius, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, pos2,
+    vec2,
+};
+use stick3d_figure::Figure;
+use stick3d_model::{Alternative, Alternatives};
+
+use self::picture::{Picture, common_scale};
+use super::session::Action;
+use super::theme;
+use crate::SketchAlternatives;
+
+/// Between two tiles, points.
+const TILE_GAP: f32 = 6.0;
+/// Lower tiles stand in two columns, points.
+const LEAST_TILE: f32 = 54.0;
+/// The largest tile, points.
+const LARGEST_TILE: f32 = 104.0;
+/// A tile's width as a share of its height.
+const TILE_SHAPE: f32 = 0.92;
+/// What the words at the bottom of a tile take of it, points.
+const WORDS_HEIGHT: f32 = 15.0;
+
+/// The tiles in their place at the right of a rectangle: pure arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Grid {
+    tile: egui::Vec2,
+    columns: usize,
+}
+
+impl Grid {
+    /// For a view of this height.
+    pub(super) fn of_height(height: f32) -> Self {
+        let tile_height = |rows: usize| {
+            let gaps = (rows - 1) as f32 * TILE_GAP;
+            ((height - gaps) / rows as f32).clamp(1.0, LARGEST_TILE)
+        };
+        let columns = if tile_height(Alternatives::MOST) >= LEAST_TILE {
+            1
+        } else {
+            2
+        };
+        let height = tile_height(Alternatives::MOST.div_ceil(columns));
+        Self {
+            tile: vec2(TILE_SHAPE * height, height),
+            columns,
+        }
+    }
+
+    /// How wide all columns are.
+    pub(super) fn width(&self) -> f32 {
+        self.tile.x * self.columns as f32 + TILE_GAP * (self.columns - 1) as f32
+    }
+
+    fn tile_at(&self, place: Rect, index: usize) -> Rect {
+        let (column, row) = (index % self.columns, index / self.columns);
+        let step = self.tile + vec2(TILE_GAP, TILE_GAP);
+        let corner = place.min + vec2(step.x * column as f32, step.y * row as f32);
+        Rect::from_min_size(corner, self.tile)
+    }
+}
+
+/// What a tile shows.
+struct Tile<'a> {
+    body: &'a Alternative,
+    words: String,
+    about: String,
+    is_chosen: bool,
+    action: Option<Action>,
+}
+
+/// The tiles: a flipped body that is none of the alternatives has the place of the last.
+fn tiles(alternatives: &SketchAlternatives) -> Vec<Tile<'_>> {
+    let chosen = alternatives.chosen();
+    let own = alternatives.shown().filter(|_| chosen.is_none());
+    let own = own.map(|body| Tile {
+        body,
+        words: "flipped".to_owned(),
+        about: "As you turned it".to_owned(),
+        is_chosen: true,
+        action: None,
+    });
+    let room = Alternatives::MOST - usize::from(own.is_some());
+    let found = alternatives.as_slice().iter().take(room).enumerate();
+    let found = found.map(|(index, body)| Tile {
+        body,
+        words: per_cent(body.probability),
+        about: format!(
+            "{} likely to be meant (Tab shows the next)",
+            per_cent(body.probability)
+        ),
+        is_chosen: chosen == Some(index),
+        action: Some(Action::Alternative(index)),
+    });
+    found.chain(own).collect()
+}
+
+fn per_cent(share: f32) -> String {
+    match (share * 100.0).round() {
+        least if least < 1.0 => "< 1 %".to_owned(),
+        rounded => format!("{rounded} %"),
+    }
+}
+
+/// Shows the tiles in their place; says which was clicked.
+pub(super) fn show(
+    ui: &Ui,
+    place: Rect,
+    figure: &Figure,
+    alternatives: &SketchAlternatives,
+) -> Option<Action> {
+    let grid = Grid::of_height(place.height());
+    let tiles = tiles(alternatives);
+    let room = grid.tile - vec2(10.0, 10.0 + WORDS_HEIGHT);
+    let scale = common_scale(tiles.iter().map(|tile| tile.body), room);
+    let mut asked = None;
+    for (index, tile) in tiles.iter().enumerate() {
+        let rect = grid.tile_at(place, index);
+        let response = ui.interact(rect, ui.id().with(("alternative", index)), Sense::click());
+        response.widget_info(|| {
+            let kind = WidgetType::RadioButton;
+            WidgetInfo::selected(kind, true, tile.is_chosen, &tile.words)
+        });
+        let is_offered = response.hovered() && !tile.is_chosen;
+        frame(ui, rect, tile.is_chosen, is_offered);
+        let painter = ui.painter().with_clip_rect(rect.shrink(2.0));
+        let centre = pos2(rect.center().x, rect.center().y - WORDS_HEIGHT / 2.0);
+        Picture::new(figure, tile.body, scale).paint(&painter, centre);
+        let ink = if tile.is_chosen {
+            theme::ACCENT
+        } else {
+            theme::INK_SOFT
+        };
+        painter.text(
+            rect.center_bottom() - vec2(0.0, 4.0),
+            Align2::CENTER_BOTTOM,
+            &tile.words,
+            theme::tiny(),
+            ink,
+        );
+        if is_offered {
+            ui.ctx().set_cursor_icon(egui::CursorIcon::PointingHand);
+        }
+        if response.on_hover_text(&tile.about).clicked() {
+            asked = tile.action;
+        }
+    }
+    asked
+}
+
+/// The paper of a tile.
+fn frame(ui: &Ui, rect: Rect, is_chosen: bool, is_offered: bool) {
+    let corners = CornerRadius::same(10);
+    ui.painter().add(theme::CARD_SHADOW.as_shape(rect, corners));
+    ui.painter().rect_filled(rect, corners, theme::PAPER);
+    let edge = match (is_chosen, is_offered) {
+        (true, _) => Stroke::new(2.0, theme::ACCENT),
+        (false, true) => Stroke::new(1.5, theme::faded(theme::ACCENT, 0.6)),
+        (false, false) => Stroke::new(1.0, theme::HAIRLINE),
+    };
+    ui.painter()
+        .rect_stroke(rect, corners, edge, StrokeKind::Inside);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_tiles_fit_into_their_place_apart() {
+        for height in [868.0, 508.0, 380.0, 240.0, 60.0] {
+            let grid = Grid::of_height(height);
+            let place = Rect::from_min_size(pos2(10.0, 20.0), vec2(grid.width(), height));
+            let tiles: Vec<Rect> = (0..Alternatives::MOST)
+                .map(|index| grid.tile_at(place, index))
+                .collect();
+            for (index, tile) in tiles.iter().enumerate() {
+                assert!(place.expand(0.01).contains_rect(*tile), "{tile:?} {height}");
+                for other in &tiles[..index] {
+                    assert!(!tile.shrink(0.1).intersects(*other), "{tile:?} {other:?}");
+                }
+            }
+        }
+        assert_eq!(Grid::of_height(508.0).columns, 1);
+        assert_eq!(Grid::of_height(300.0).columns, 2);
+    }
+
+    #[test]
+    fn shares_are_told_in_per_cent() {
+        assert_eq!(per_cent(0.424), "42 %");
+        assert_eq!(per_cent(0.004), "< 1 %");
+        assert_eq!(per_cent(1.0), "100 %");
+    }
+}
