@@ -8,8 +8,8 @@
 //!
 //! The paper does not say: the width of the hidden layers (512 here), the size of a batch (64; 8 for a set as small as its horses), the scale of the meshes
 //! (the farthest vertex from the root joint is at 0.95, where the tanh can still reach it), and the first weights (He and
-//! others). The variance of the latents begins at exp(-4): where it begins at 1, noise drowns what the decoder could learn
-//! from, equation 1 finds its way to the mean mesh at no divergence, and stays there.
+//! others). The variance of the latents begins at exp(-4): from 1 on, noise may drown what the decoder could learn
+//! from, and equation 1 find its way to the mean mesh at no divergence. No run from there was made; from exp(-4) none did.
 
 mod coarse;
 mod config;
