@@ -13,8 +13,8 @@ use nearness::{farthest_elsewhere_m, is_flipped, is_same_drawing, nearest, turne
 
 /// Joints nearer than this share of the figure's size are where they were.
 const AS_IT_WAS_SHARE: f32 = 0.06;
-/// A body whose joints are farther than this share of its size from where they were, on average, has jumped.
-const MOVED_SHARE: f32 = 0.02;
+/// A body with a joint farther than this share of its size from where it was has jumped.
+const MOVED_SHARE: f32 = 0.04;
 
 /// Shows another of the bodies that the sketch may mean. Without effect where there is no such figure or body.
 ///
@@ -206,19 +206,19 @@ impl SketchAlternatives {
         let index = nearest(self.as_slice(), &self.shown, |_| true);
         std::mem::swap(&mut self.shown, &mut self.before);
         self.show(index.unwrap_or(0));
-        let jump_m = self.shown.distance_m(&self.before);
-        if jump_m < MOVED_SHARE * inference.figure().template_extent_m() {
-            return Ok(());
-        }
         // A limb without joints: nothing is turned round.
         let nothing = Limb {
             base: inference.figure().root,
             joints: vec![],
         };
+        let jump_m = farthest_elsewhere_m(&self.before, &self.shown, &nothing);
+        if jump_m < MOVED_SHARE * inference.figure().template_extent_m() {
+            return Ok(());
+        }
         let mut pulled = vec![0.0; inference.latent_len()];
         inference.flip_limb(sketch, &self.before.latent, &nothing, &mut pulled)?;
         self.show_latent(inference, &pulled)?;
-        if self.shown.distance_m(&self.before) >= jump_m {
+        if farthest_elsewhere_m(&self.before, &self.shown, &nothing) >= jump_m {
             self.show(index.unwrap_or(0));
         }
         Ok(())

@@ -16,7 +16,7 @@ use crate::sketch_input::{DrawingOrder, SketchDrawing};
 /// The file field is at most so wide, points.
 const FILE_WIDTH: f32 = 200.0;
 /// In narrower rows buttons are closer together, points.
-const NARROW_ROW: f32 = 250.0;
+const NARROW_ROW: f32 = 340.0;
 
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 

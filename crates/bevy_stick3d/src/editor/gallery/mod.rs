@@ -3,8 +3,7 @@
 mod picture;
 
 use bevy_egui::egui::{
-    self, Align2, CornerRadius, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, pos2,
-    vec2,
+    self, Align2, CornerRadius, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, vec2,
 };
 use stick3d_figure::Figure;
 use stick3d_model::{Alternative, Alternatives};
@@ -20,13 +19,15 @@ const TILE_GAP: f32 = 6.0;
 const USUAL_TILE: f32 = 52.0;
 /// The lowest and the highest tile, points.
 const LEAST_TILE: f32 = 36.0;
-const LARGEST_TILE: f32 = 104.0;
+const LARGEST_TILE: f32 = 96.0;
 /// All of them take at most this share of the view's width.
 const VIEW_SHARE: f32 = 0.34;
 /// A tile's width as a share of its height.
-const TILE_SHAPE: f32 = 0.92;
-/// What the words at the bottom of a tile take of it, points.
-const WORDS_HEIGHT: f32 = 15.0;
+const TILE_SHAPE: f32 = 1.3;
+/// What the words at the right of a tile take of its width, points.
+const WORDS_WIDTH: f32 = 24.0;
+/// Between a tile's edge and what is in it, points.
+const MARGIN: f32 = 4.0;
 
 /// The tiles at the right of a view: pure arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,7 +122,7 @@ pub(super) fn show(
     alternatives: &SketchAlternatives,
 ) -> Option<Action> {
     let tiles = tiles(alternatives);
-    let room = grid.tile - vec2(10.0, 10.0 + WORDS_HEIGHT);
+    let room = grid.tile - vec2(2.0 * MARGIN + WORDS_WIDTH, 2.0 * MARGIN);
     let scale = common_scale(tiles.iter().map(|tile| tile.body), room);
     let mut asked = None;
     for (index, tile) in tiles.iter().enumerate() {
@@ -134,7 +135,7 @@ pub(super) fn show(
         let is_offered = response.hovered() && !tile.is_chosen;
         frame(ui, rect, tile.is_chosen, is_offered);
         let painter = ui.painter().with_clip_rect(rect.shrink(2.0));
-        let centre = pos2(rect.center().x, rect.center().y - WORDS_HEIGHT / 2.0);
+        let centre = rect.center() - vec2(WORDS_WIDTH / 2.0, 0.0);
         Picture::new(figure, tile.body, scale).paint(&painter, centre);
         let ink = if tile.is_chosen {
             theme::ACCENT
@@ -142,8 +143,8 @@ pub(super) fn show(
             theme::INK_SOFT
         };
         painter.text(
-            rect.center_bottom() - vec2(0.0, 4.0),
-            Align2::CENTER_BOTTOM,
+            rect.right_bottom() - vec2(1.5 * MARGIN, MARGIN),
+            Align2::RIGHT_BOTTOM,
             &tile.words,
             theme::tiny(),
             ink,
@@ -174,6 +175,8 @@ fn frame(ui: &Ui, rect: Rect, is_chosen: bool, is_offered: bool) {
 
 #[cfg(test)]
 mod tests {
+    use bevy_egui::egui::pos2;
+
     use super::*;
 
     #[test]

@@ -1,7 +1,7 @@
 //! A body in a few strokes, turned so that its depth is seen.
 
 use bevy::math::{Quat, Vec3};
-use bevy_egui::egui::{self, Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
+use bevy_egui::egui::{self, Color32, Painter, Pos2, Rect, Stroke, pos2, vec2};
 use stick3d_figure::Figure;
 use stick3d_model::Alternative;
 
@@ -12,16 +12,16 @@ use super::super::theme::{self, side_color};
 const YAW_RAD: f32 = 0.87;
 const PITCH_RAD: f32 = 0.26;
 /// How thick bones are, as a share of the figure's size.
-const BONE_SHARE: f32 = 0.042;
+const BONE_SHARE: f32 = 0.046;
 /// What is a whole figure's size nearer is drawn so much thicker, and in so much more of its colour.
 const NEARER_IS_THICKER: f32 = 0.7;
 const NEARER_IS_DARKER: f32 = 1.1;
 /// The least and the most of a bone's colour.
 const INK_RANGE: [f32; 2] = [0.42, 1.0];
 /// Bones are cut into so many pieces, each with a colour of its own.
-const PIECES: usize = 6;
+const PIECES: usize = 5;
 /// The paper that is seen round a bone before another, points.
-const HALO: f32 = 1.6;
+const HALO: f32 = 0.9;
 
 /// A body to paint.
 pub(super) struct Picture<'a> {
@@ -129,12 +129,13 @@ impl<'a> Picture<'a> {
             };
             for ends in pieces.clone() {
                 let middle_m = (ends[0].z + ends[1].z) / 2.0;
-                let ends = ends.map(|end| (on_screen(end), self.thick(width, end.z) / 2.0 + grow));
-                painter.add(capsule(ends, paper(middle_m)));
-            }
-            for end in [from, to] {
-                let radius = self.thick(width, end.z) / 2.0 + grow;
-                painter.circle_filled(on_screen(end), radius, paper(end.z));
+                let half = self.thick(width, middle_m) / 2.0 + grow;
+                let color = paper(middle_m);
+                let ends = ends.map(on_screen);
+                painter.line_segment(ends, Stroke::new(2.0 * half, color));
+                for end in ends {
+                    painter.circle_filled(end, half, color);
+                }
             }
             if let Some(head) = head {
                 let radius = 0.95 * self.thick(width, head.z) + grow;
@@ -153,18 +154,6 @@ impl<'a> Picture<'a> {
         let share = 0.78 + NEARER_IS_DARKER * depth_m / self.size_m;
         theme::PAPER.lerp_to_gamma(color, share.clamp(least, most))
     }
-}
-
-/// A piece of a bone that is thicker at one end.
-fn capsule([(a, a_half), (b, b_half)]: [(Pos2, f32); 2], color: Color32) -> Shape {
-    let across = (b - a).normalized().rot90();
-    let corners = vec![
-        a + across * a_half,
-        b + across * b_half,
-        b - across * b_half,
-        a - across * a_half,
-    ];
-    Shape::convex_polygon(corners, color, Stroke::NONE)
 }
 
 #[cfg(test)]
