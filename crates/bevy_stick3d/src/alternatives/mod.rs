@@ -4,6 +4,7 @@ mod nearness;
 
 use bevy::prelude::*;
 use stick3d_figure::Sketch;
+use stick3d_figure::figure::Limb;
 use stick3d_model::{Alternative, Alternatives, InferError, Inference};
 
 use crate::figure::{Latent, StickFigure};
@@ -80,7 +81,8 @@ impl SketchAlternatives {
         self.found.as_slice()
     }
 
-    /// Which of them is shown; `None` when it is another body, whose limb was flipped, or when there is none.
+    /// Which of them is shown; `None` when it is another body, whose limb was flipped or which was kept while the sketch
+    /// changed, or when there is none.
     pub fn chosen(&self) -> Option<usize> {
         self.chosen
     }
@@ -144,7 +146,9 @@ impl SketchAlternatives {
             is_whole && before.is_some_and(|before| is_same_drawing(before.points(), points));
         match wish {
             Wish::Body(latent) if self.show_latent(inference, &latent).is_ok() => {}
-            Wish::Same if is_same => self.show_nearest(inference, &sketch),
+            Wish::Same if is_same => self
+                .show_nearest(inference, &sketch)
+                .map_err(|error| error.to_string())?,
             _ => self.show(0),
         }
         self.sketch = Some(sketch);
@@ -192,29 +196,32 @@ impl SketchAlternatives {
         Ok(is_done)
     }
 
-    /// Shows what is nearest to the body shown: one of the bodies, or one of them with limbs turned round as they were.
-    fn show_nearest(&mut self, inference: &mut Inference, sketch: &Sketch) {
+    /// Shows what is nearest to the body shown: one of those that were found or, where that has jumped, the body shown
+    /// itself, pulled onto the sketch.
+    fn show_nearest(
+        &mut self,
+        inference: &mut Inference,
+        sketch: &Sketch,
+    ) -> Result<(), InferError> {
         let index = nearest(self.as_slice(), &self.shown, |_| true);
         std::mem::swap(&mut self.shown, &mut self.before);
         self.show(index.unwrap_or(0));
-        let size_m = inference.figure().template_extent_m();
-        if self.shown.distance_m(&self.before) < MOVED_SHARE * size_m {
-            return;
+        let jump_m = self.shown.distance_m(&self.before);
+        if jump_m < MOVED_SHARE * inference.figure().template_extent_m() {
+            return Ok(());
         }
-        let mut latent = vec![0.0; inference.latent_len()];
-        for limb in inference.figure().limbs() {
-            if !is_flipped(&self.before, &self.shown, &limb) {
-                continue;
-            }
-            let unturned = self.shown.clone();
-            let turned = inference.flip_limb(sketch, &unturned.latent, &limb, &mut latent);
-            let is_shown = turned.and_then(|()| self.show_latent(inference, &latent));
-            let was_m = unturned.distance_m(&self.before);
-            if is_shown.is_err() || self.shown.distance_m(&self.before) >= was_m {
-                self.shown = unturned;
-                self.chosen = self.index_of(&self.shown.latent);
-            }
+        // A limb without joints: nothing is turned round.
+        let nothing = Limb {
+            base: inference.figure().root,
+            joints: vec![],
+        };
+        let mut pulled = vec![0.0; inference.latent_len()];
+        inference.flip_limb(sketch, &self.before.latent, &nothing, &mut pulled)?;
+        self.show_latent(inference, &pulled)?;
+        if self.shown.distance_m(&self.before) >= jump_m {
+            self.show(index.unwrap_or(0));
         }
+        Ok(())
     }
 
     fn index_of(&self, latent: &[f32]) -> Option<usize> {

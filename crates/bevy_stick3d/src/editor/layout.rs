@@ -21,8 +21,6 @@ const LEAST_PAIR: f32 = 230.0;
 const PAIR_GAP: f32 = 12.0;
 /// Between the 3D view and the bodies beside it, points.
 const GALLERY_GAP: f32 = 10.0;
-/// They take at most this share of the view.
-const GALLERY_SHARE: f32 = 0.4;
 
 /// The parts of the window, in egui points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +38,7 @@ pub(super) struct Layout {
     /// The 3D view.
     pub(super) view: Rect,
     /// The bodies that the drawing may mean, beside the view.
-    pub(super) gallery: Option<Rect>,
+    pub(super) gallery: Option<Grid>,
     /// The timeline along the bottom, of motions.
     pub(super) timeline: Option<Rect>,
 }
@@ -110,11 +108,9 @@ impl Layout {
     /// The same with a place for the bodies that the drawing may mean, which the 3D view gives up, if there is room.
     #[must_use]
     pub(super) fn with_gallery(mut self) -> Self {
-        let width = Grid::of_height(self.view.height()).width();
-        if width + GALLERY_GAP <= GALLERY_SHARE * self.view.width() {
-            let gallery = self.view.with_min_x(self.view.max.x - width);
-            self.view.max.x = gallery.min.x - GALLERY_GAP;
-            self.gallery = Some(gallery);
+        self.gallery = Grid::beside(self.view);
+        if let Some(gallery) = &self.gallery {
+            self.view.max.x = gallery.place.min.x - GALLERY_GAP;
         }
         self
     }
@@ -154,11 +150,11 @@ mod tests {
             let mut layout = Layout::of(window, 200.0, mode);
             if mode == Mode::Pose {
                 layout = layout.with_gallery();
-                assert!(layout.gallery.is_some() || width < 300.0, "{window:?}");
+                assert!(layout.gallery.is_some() || width < 600.0, "{window:?}");
             }
             let mut parts = vec![layout.choices, layout.files, layout.tools, layout.view];
             parts.extend(layout.timeline);
-            parts.extend(layout.gallery);
+            parts.extend(layout.gallery.map(|gallery| gallery.place));
             match layout.pair {
                 Some(pair) => parts.extend(pair),
                 None => parts.push(layout.canvas),

@@ -22,7 +22,6 @@ pub(super) fn show(
     mut contexts: EguiContexts,
     mut desk: Desk,
     mut view: ResMut<View>,
-    bodies: Query<(&StickFigure, &FigureStatus)>,
     stage: Stage,
     models: Res<Stick3dStatus>,
     clock: Res<EditorClock>,
@@ -55,7 +54,9 @@ pub(super) fn show(
         desk.act(action);
     }
     let is_blank = show_canvases(&ui, &layout, &mut desk, &clock);
-    let body = desk.session.body().and_then(|body| bodies.get(body).ok());
+    let body = desk.session.body();
+    let body = body.and_then(|body| stage.bodies.get(body).ok());
+    let body = body.map(|(figure, status, ..)| (figure, status));
     let status = standing_problem(&models, body, &desk);
     panels::status_text(&ui, layout.canvas, &status);
     if desk.session.is_drop_hovering {
@@ -93,7 +94,16 @@ fn lay_out(ui: &egui::Ui, window: egui::Rect, desk: &Desk) -> Layout {
 /// Where the body that is shown stands, and who looks at it.
 #[derive(SystemParam)]
 pub(super) struct Stage<'w, 's> {
-    bodies: Query<'w, 's, (&'static StreamedBody, &'static Transform)>,
+    bodies: Query<
+        'w,
+        's,
+        (
+            &'static StickFigure,
+            &'static FigureStatus,
+            &'static StreamedBody,
+            &'static Transform,
+        ),
+    >,
     cameras: Query<'w, 's, &'static Transform, With<ViewCamera>>,
 }
 
@@ -109,7 +119,7 @@ fn limb_under(
         return None;
     }
     let shown = desk.alternatives()?.shown()?;
-    let (body, transform) = stage.bodies.get(choice.body).ok()?;
+    let (.., body, transform) = stage.bodies.get(choice.body).ok()?;
     let raised = Vec3::Y * body.root_height_m();
     let joints = shown.joints.iter();
     let joints: Vec<Vec3> = joints
@@ -158,7 +168,7 @@ fn asked_of_panels(ui: &mut egui::Ui, layout: &Layout, desk: &mut Desk) -> Optio
     });
     let of_gallery = layout
         .gallery
-        .and_then(|rect| gallery::show(ui, rect, choice.figure.figure(), desk.alternatives()?));
+        .and_then(|grid| gallery::show(ui, &grid, choice.figure.figure(), desk.alternatives()?));
     desk.session.set_file(file);
     chosen
         .or(of_tools)

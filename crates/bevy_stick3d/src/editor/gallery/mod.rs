@@ -16,50 +16,57 @@ use crate::SketchAlternatives;
 
 /// Between two tiles, points.
 const TILE_GAP: f32 = 6.0;
-/// Lower tiles stand in two columns, points.
-const LEAST_TILE: f32 = 54.0;
-/// The largest tile, points.
+/// A tile that is not lower than this stands in one column, points.
+const USUAL_TILE: f32 = 52.0;
+/// The lowest and the highest tile, points.
+const LEAST_TILE: f32 = 36.0;
 const LARGEST_TILE: f32 = 104.0;
+/// All of them take at most this share of the view's width.
+const VIEW_SHARE: f32 = 0.34;
 /// A tile's width as a share of its height.
 const TILE_SHAPE: f32 = 0.92;
 /// What the words at the bottom of a tile take of it, points.
 const WORDS_HEIGHT: f32 = 15.0;
 
-/// The tiles in their place at the right of a rectangle: pure arithmetic.
+/// The tiles at the right of a view: pure arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Grid {
+    /// What all of them take.
+    pub(super) place: Rect,
     tile: egui::Vec2,
     columns: usize,
 }
 
 impl Grid {
-    /// For a view of this height.
-    pub(super) fn of_height(height: f32) -> Self {
-        let tile_height = |rows: usize| {
-            let gaps = (rows - 1) as f32 * TILE_GAP;
-            ((height - gaps) / rows as f32).clamp(1.0, LARGEST_TILE)
+    /// In one column where that is high enough for tiles to be seen, else in two; none where there is no room.
+    pub(super) fn beside(view: Rect) -> Option<Self> {
+        let room = view.width() * VIEW_SHARE;
+        let height_in = |columns: usize| {
+            let rows = Alternatives::MOST.div_ceil(columns);
+            let gaps = |count: usize| (count - 1) as f32 * TILE_GAP;
+            let by_width = (room - gaps(columns)) / columns as f32 / TILE_SHAPE;
+            let by_height = (view.height() - gaps(rows)) / rows as f32;
+            by_width.min(by_height).min(LARGEST_TILE)
         };
-        let columns = if tile_height(Alternatives::MOST) >= LEAST_TILE {
-            1
+        let one = height_in(1);
+        let (columns, height) = if one >= USUAL_TILE || one >= height_in(2) {
+            (1, one)
         } else {
-            2
+            (2, height_in(2))
         };
-        let height = tile_height(Alternatives::MOST.div_ceil(columns));
-        Self {
-            tile: vec2(TILE_SHAPE * height, height),
+        let tile = vec2(TILE_SHAPE * height, height);
+        let width = tile.x * columns as f32 + TILE_GAP * (columns - 1) as f32;
+        (height >= LEAST_TILE).then(|| Self {
+            place: view.with_min_x(view.max.x - width),
+            tile,
             columns,
-        }
+        })
     }
 
-    /// How wide all columns are.
-    pub(super) fn width(&self) -> f32 {
-        self.tile.x * self.columns as f32 + TILE_GAP * (self.columns - 1) as f32
-    }
-
-    fn tile_at(&self, place: Rect, index: usize) -> Rect {
+    fn tile_at(&self, index: usize) -> Rect {
         let (column, row) = (index % self.columns, index / self.columns);
         let step = self.tile + vec2(TILE_GAP, TILE_GAP);
-        let corner = place.min + vec2(step.x * column as f32, step.y * row as f32);
+        let corner = self.place.min + vec2(step.x * column as f32, step.y * row as f32);
         Rect::from_min_size(corner, self.tile)
     }
 }
@@ -73,14 +80,14 @@ struct Tile<'a> {
     action: Option<Action>,
 }
 
-/// The tiles: a flipped body that is none of the alternatives has the place of the last.
+/// The tiles: a body that is shown and is none of the alternatives has the place of the last.
 fn tiles(alternatives: &SketchAlternatives) -> Vec<Tile<'_>> {
     let chosen = alternatives.chosen();
     let own = alternatives.shown().filter(|_| chosen.is_none());
     let own = own.map(|body| Tile {
         body,
-        words: "flipped".to_owned(),
-        about: "As you turned it".to_owned(),
+        words: "yours".to_owned(),
+        about: "As you turned it, or kept it while you dragged".to_owned(),
         is_chosen: true,
         action: None,
     });
@@ -106,20 +113,19 @@ fn per_cent(share: f32) -> String {
     }
 }
 
-/// Shows the tiles in their place; says which was clicked.
+/// Shows the tiles; says which was clicked.
 pub(super) fn show(
     ui: &Ui,
-    place: Rect,
+    grid: &Grid,
     figure: &Figure,
     alternatives: &SketchAlternatives,
 ) -> Option<Action> {
-    let grid = Grid::of_height(place.height());
     let tiles = tiles(alternatives);
     let room = grid.tile - vec2(10.0, 10.0 + WORDS_HEIGHT);
     let scale = common_scale(tiles.iter().map(|tile| tile.body), room);
     let mut asked = None;
     for (index, tile) in tiles.iter().enumerate() {
-        let rect = grid.tile_at(place, index);
+        let rect = grid.tile_at(index);
         let response = ui.interact(rect, ui.id().with(("alternative", index)), Sense::click());
         response.widget_info(|| {
             let kind = WidgetType::RadioButton;
@@ -172,21 +178,32 @@ mod tests {
 
     #[test]
     fn all_tiles_fit_into_their_place_apart() {
-        for height in [868.0, 508.0, 380.0, 240.0, 60.0] {
-            let grid = Grid::of_height(height);
-            let place = Rect::from_min_size(pos2(10.0, 20.0), vec2(grid.width(), height));
+        for (width, height) in [
+            (830.0, 868.0),
+            (500.0, 508.0),
+            (352.0, 468.0),
+            (668.0, 300.0),
+        ] {
+            let view = Rect::from_min_size(pos2(10.0, 20.0), vec2(width, height));
+            let grid = Grid::beside(view).unwrap();
+            assert!(grid.place.width() <= VIEW_SHARE * width + 0.01);
             let tiles: Vec<Rect> = (0..Alternatives::MOST)
-                .map(|index| grid.tile_at(place, index))
+                .map(|index| grid.tile_at(index))
                 .collect();
             for (index, tile) in tiles.iter().enumerate() {
-                assert!(place.expand(0.01).contains_rect(*tile), "{tile:?} {height}");
+                assert!(grid.place.expand(0.01).contains_rect(*tile), "{tile:?}");
                 for other in &tiles[..index] {
                     assert!(!tile.shrink(0.1).intersects(*other), "{tile:?} {other:?}");
                 }
             }
         }
-        assert_eq!(Grid::of_height(508.0).columns, 1);
-        assert_eq!(Grid::of_height(300.0).columns, 2);
+        let columns = |width, height| {
+            let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(width, height));
+            Grid::beside(view).map(|grid| grid.columns)
+        };
+        assert_eq!(columns(500.0, 508.0), Some(1));
+        assert_eq!(columns(668.0, 300.0), Some(2));
+        assert_eq!(columns(80.0, 60.0), None);
     }
 
     #[test]

@@ -49,7 +49,7 @@ fn body(app: &App) -> Alternative {
 /// Does something with the pen, and lets a frame pass.
 fn pen(app: &mut App, work: impl FnOnce(&mut SketchDrawing)) {
     let canvas = active(app).slots[0].canvas;
-    work(&mut app.world_mut().get_mut(canvas).unwrap());
+    work(&mut app.world_mut().get_mut::<SketchDrawing>(canvas).unwrap());
     app.update();
 }
 
