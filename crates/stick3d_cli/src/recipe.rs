@@ -53,7 +53,7 @@ mod tests {
 
     fn change(change: &str) -> Result<TrainConfig, String> {
         let recipe = TrainConfig::of(Figure::human());
-        changed(recipe, &[change.to_owned()]).map_err(|failure| failure.to_string())
+        changed(recipe, &[change.to_owned()]).map_err(|failure| failure.message())
     }
 
     #[test]

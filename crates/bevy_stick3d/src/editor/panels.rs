@@ -371,7 +371,6 @@ mod tests {
             };
             ctx.begin_pass(RawInput {
                 events: vec![event],
-                modifiers,
                 ..RawInput::default()
             });
             let asked = tab(&ctx, &Session::default());

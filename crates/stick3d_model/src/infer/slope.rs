@@ -180,7 +180,7 @@ mod tests {
             };
             let step = 1e-3;
             let differences = [0, 1].map(|way| {
-                let at = |by: f32| {
+                let mut at = |by: f32| {
                     let mut offset = [0.0; 2];
                     offset[way] = by;
                     joints_at(offset)
