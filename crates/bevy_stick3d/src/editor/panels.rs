@@ -375,7 +375,7 @@ mod tests {
             });
             let asked = tab(&ctx, &Session::default());
             let button = Ui::new(ctx.clone(), "test".into(), UiBuilder::new()).button("Undo");
-            let _ = ctx.end_pass();
+            ctx.end_pass().textures_delta.clear();
             assert!(!button.has_focus());
             asked
         };

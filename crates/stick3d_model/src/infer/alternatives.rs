@@ -101,6 +101,9 @@ impl Alternatives {
             list[..=first].rotate_right(1);
         }
         self.len = self.len.min(Self::MOST);
+        let list = &mut self.list[..self.len];
+        let sum: f32 = list.iter().map(|a| a.probability).sum();
+        list.iter_mut().for_each(|a| a.probability /= sum);
     }
 
     fn merge(&mut self, same_m: f32) {

@@ -9,70 +9,101 @@ use super::refine::{Body, Refiner};
 use crate::kernels;
 
 /// How often the body is pulled and looked at again.
-const STEPS: usize = 5;
+const STEPS: usize = 10;
 /// How near joints are to come to where they should be: standard deviation, share of the figure's size.
-const NEARNESS: f64 = 0.008;
+const NEARNESS: f64 = 0.012;
 /// A limb turns farther than answers are usually off.
 const REACH: f32 = 5.0;
 
 impl Refiner {
-    /// Writes the latent of the body that is as that of `latent`, but for a limb, whose joints are as far before its base as
-    /// they were behind it; on the sketch plane its joints are where they are drawn.
-    pub(super) fn flip(
+    /// Pulls the body of `start` to where the joints should come to be, writes its latent, and gives the mean square of how
+    /// far its joints are from there, square metres.
+    pub(super) fn pull_to(
         &mut self,
-        latent: &[f32],
-        limb: &Limb,
-        drawn: &[Vec2],
+        start: &[f32],
+        goals: &[Vec3],
         body: &mut Body<'_>,
-        flipped: &mut [f32],
-    ) {
-        let count = drawn.len();
-        let (rank, size) = (self.slopes.rank(), 3 * count);
-        let mut joints = vec![Vec3::ZERO; count];
+        pulled: &mut [f32],
+    ) -> f32 {
+        let (rank, size) = (self.slopes.rank(), 3 * goals.len());
+        let mut joints = vec![Vec3::ZERO; goals.len()];
         let mut slopes = vec![0.0; size * rank];
         let mut offset = vec![0.0; rank];
         let mut gaussian = Gaussian::new(size);
-        flipped.copy_from_slice(latent);
-        let mut goals = None;
+        let mut goal_offset = vec![0.0; rank];
+        pulled.copy_from_slice(start);
+        write_joints(body, pulled, &mut joints);
+        let mut least = mean_square(&joints, goals);
         for _ in 0..STEPS {
-            body.head.run(flipped);
+            write_joints(body, pulled, &mut joints);
             let features = body.layer.features(body.head.output(), body.scratch);
-            body.rows.write(features, &mut joints);
-            let goals = goals.get_or_insert_with(|| goals_of(&joints, limb, drawn));
             self.slopes
                 .write(body.head, body.layer, features, body.rows, 3, &mut slopes);
+            let row = |i: usize| &slopes[i * rank..][..rank];
             let difference: Vec<f64> = (0..size)
                 .map(|i| {
                     let off = goals[i / 3][i % 3] - joints[i / 3][i % 3];
-                    let back = kernels::dot(&slopes[i * rank..][..rank], &offset);
-                    f64::from(off + back)
+                    f64::from(off + kernels::dot(row(i), &offset))
                 })
                 .collect();
             let nearness = (NEARNESS * self.skeleton.size_m()).powi(2);
             for (at, entry) in gaussian.covariance().iter_mut().enumerate() {
                 let (i, j) = (at / size, at % size);
-                let row = |i: usize| &slopes[i * rank..][..rank];
                 *entry = f64::from(REACH * REACH * kernels::dot(row(i), row(j)));
                 if i == j {
                     *entry += nearness;
                 }
             }
             gaussian.factorise();
-            offset.fill(0.0);
-            let solved = gaussian.solve(&difference);
-            for (slope, pull) in slopes.chunks_exact(rank).zip(solved) {
-                for (offset, slope) in offset.iter_mut().zip(slope) {
+            goal_offset.fill(0.0);
+            for (i, pull) in gaussian.solve(&difference).iter().enumerate() {
+                for (offset, slope) in goal_offset.iter_mut().zip(row(i)) {
                     *offset += REACH * REACH * *pull as f32 * slope;
                 }
             }
-            flipped.copy_from_slice(latent);
-            kernels::accumulate(&offset, &self.ways, flipped);
+            // A whole step may lead too far on so long a way.
+            let from = offset.clone();
+            let nearer = [1.0, 0.5, 0.25, 0.1].into_iter().find(|share| {
+                for ((offset, from), to) in offset.iter_mut().zip(&from).zip(&goal_offset) {
+                    *offset = from + share * (to - from);
+                }
+                pulled.copy_from_slice(start);
+                kernels::accumulate(&offset, &self.ways, pulled);
+                write_joints(body, pulled, &mut joints);
+                let off = mean_square(&joints, goals);
+                let is_nearer = off < least;
+                least = least.min(off);
+                is_nearer
+            });
+            if nearer.is_none() {
+                pulled.copy_from_slice(start);
+                kernels::accumulate(&from, &self.ways, pulled);
+                break;
+            }
         }
+        least
     }
 }
 
-/// Where the joints should come to be.
-fn goals_of(joints: &[Vec3], limb: &Limb, drawn: &[Vec2]) -> Vec<Vec3> {
+/// Mean square of the distance between joints, square metres.
+fn mean_square(joints: &[Vec3], goals: &[Vec3]) -> f32 {
+    let squares = joints
+        .iter()
+        .zip(goals)
+        .map(|(a, b)| a.distance_squared(*b));
+    squares.sum::<f32>() / goals.len().max(1) as f32
+}
+
+/// The joints of a latent, metres.
+pub(super) fn write_joints(body: &mut Body<'_>, latent: &[f32], joints: &mut [Vec3]) {
+    let code = body.head.run(latent);
+    let features = body.layer.features(code, body.scratch);
+    body.rows.write(features, joints);
+}
+
+/// Where the joints of a body should come to be: the limb as far before its base as it was behind it, all on the sketch plane
+/// where they are drawn.
+pub(super) fn goals_of(joints: &[Vec3], limb: &Limb, drawn: &[Vec2]) -> Vec<Vec3> {
     let flat: Vec<Vec2> = joints.iter().map(|joint| joint.truncate()).collect();
     let mut aligned = flat.clone();
     noise::align(drawn, &flat, &mut aligned);

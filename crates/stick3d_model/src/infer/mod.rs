@@ -221,18 +221,35 @@ impl Inference {
     ) -> Result<(), InferError> {
         require("the flipped latent", flipped.len(), self.latent_len)?;
         coefficients(&mut self.head, self.latent_len, latent)?;
-        sketch.write_input_vector(&self.figure, &mut self.input)?;
+        let mut alternatives = Alternatives::default();
+        self.infer(sketch, &mut alternatives)?;
         flipped.copy_from_slice(latent);
-        if let (Some(refiner), JointMap::Linear(rows)) = (&mut self.refiner, &self.joints) {
-            let mut body = Body {
-                head: &mut self.head,
-                layer: &self.final_layer,
-                scratch: &mut self.final_scratch,
-                rows,
-            };
-            refiner.flip(latent, limb, sketch.points(), &mut body, flipped);
+        let (Some(refiner), JointMap::Linear(rows)) = (&mut self.refiner, &self.joints) else {
+            return Ok(());
+        };
+        let mut body = Body {
+            head: &mut self.head,
+            layer: &self.final_layer,
+            scratch: &mut self.final_scratch,
+            rows,
+        };
+        flip::write_joints(&mut body, latent, &mut self.found);
+        let depth = self.found[limb.end()].z - self.found[limb.base].z;
+        let goals = flip::goals_of(&self.found, limb, sketch.points());
+        // From a body whose limb is flipped already it is a short way.
+        let others = alternatives.as_slice().iter();
+        let others = others.filter(|other| other.toward_viewer_m(limb) * depth < 0.0);
+        let starts = others.map(|other| other.latent.as_slice()).chain([latent]);
+        let mut pulled = vec![0.0; latent.len()];
+        let mut least = f32::INFINITY;
+        for start in starts {
+            let off = refiner.pull_to(start, &goals, &mut body, &mut pulled);
+            if off < least {
+                least = off;
+                flipped.copy_from_slice(&pulled);
+            }
         }
-        Ok(())
+        require_finite("flipped limb's latent", flipped)
     }
 
     /// The mesh of a latent (paper section 4.2, Decoder) and its unit normals; metres, the figure's root joint at the
