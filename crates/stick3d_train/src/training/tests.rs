@@ -173,7 +173,7 @@ fn evaluation_measures_model_and_baseline_alike() {
     assert_eq!(report.parts.len(), 2);
     for (part, cases) in report.parts.iter().zip([6, 24]) {
         assert_eq!((part.cases, part.any_order.poses), (cases, cases));
-        assert_eq!(part.rows.len(), 5 + 5 + 2, "{:?}", part.rows);
+        assert_eq!(part.rows.len(), 5 + 5 + 5 + 2, "{:?}", part.rows);
         for row in &part.rows {
             let metrics = &row.metrics;
             assert_eq!(metrics.cases, cases);
