@@ -15,17 +15,21 @@ fn repository(path: &str) -> std::path::PathBuf {
 
 fn ready(figure: &Figure) -> Inference {
     let path = repository(&format!("assets/models/{}.stick3d", figure.name));
-    Inference::new(&Model::load(&path).unwrap()).unwrap()
+    let model = Model::load(&path).expect("the shipped model is sound");
+    Inference::new(&model).expect("the shipped model runs")
 }
 
 /// The sketches of the repository that are of a figure, by name.
 fn sketches(figure: &Figure) -> Vec<(String, Sketch)> {
-    let files = std::fs::read_dir(repository("assets/sketches")).unwrap();
-    let mut paths: Vec<_> = files.map(|file| file.unwrap().path()).collect();
+    let files = std::fs::read_dir(repository("assets/sketches")).expect("the folder is there");
+    let mut paths: Vec<_> = files
+        .map(|file| file.expect("the folder can be read").path())
+        .collect();
     paths.sort();
     let read = |path: &std::path::PathBuf| {
         let name = path.file_stem()?.to_string_lossy().into_owned();
-        let sketch = Sketch::from_json(figure, &std::fs::read(path).unwrap()).ok()?;
+        let sketch =
+            Sketch::from_json(figure, &std::fs::read(path).expect("the file can be read")).ok()?;
         Some((name, sketch))
     };
     let found: Vec<_> = paths.iter().filter_map(read).collect();
