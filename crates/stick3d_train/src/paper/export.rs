@@ -77,7 +77,7 @@ pub(super) fn model(
         encoder3d,
         head,
         final_layer: FinalLayer::Dense(layer),
-        statistics: Some(of_latents(latents, longest_edges(set, samples))?),
+        statistics: Some(of_latents(latents, longest_edges(set, samples), vec![])?),
     };
     Ok(Model::new(parts)?)
 }

@@ -42,16 +42,15 @@ pub(super) fn statistics(
         })
         .collect::<Result<Vec<_>, _>>()?
         .concat();
-    let mut statistics = of_latents(&latents, longest_edges(parts, bodies, &picks))?;
-    statistics.answer_ways = answer_ways(parts, bodies, rotations, augmentation, seed)?;
-    statistics.round_to_half();
-    Ok(statistics)
+    let ways = answer_ways(parts, bodies, rotations, augmentation, seed)?;
+    of_latents(&latents, longest_edges(parts, bodies, &picks), ways)
 }
 
-/// The statistics of given latents, and of edges that are at most so long.
+/// The statistics of given latents, of edges that are at most so long, and of answers that are off in these ways.
 pub(crate) fn of_latents(
     latents: &[Vec<f32>],
     longest_edges_m: Vec<f32>,
+    answer_ways: Vec<f32>,
 ) -> Result<TrainingStatistics, TrainError> {
     let (mean, whitening) = whitening(latents)?;
     let mut statistics = TrainingStatistics {
@@ -59,7 +58,7 @@ pub(crate) fn of_latents(
         whitening,
         far: 1.0,
         longest_edges_m,
-        answer_ways: vec![],
+        answer_ways,
     };
     statistics.round_to_half();
     let mut distances: Vec<f32> = latents.iter().map(|z| statistics.distance(z)).collect();
