@@ -4,6 +4,7 @@
 //! `cargo run --release --example pose_editor -- --figure horse`
 //! `cargo run --release --example pose_editor -- --sketch assets/sketches/wave.json --screenshot wave.png`
 //! `cargo run --release --example pose_editor -- --clip assets/clips/wave.clip.ron`
+//! `cargo run --release --example pose_editor -- --order guided`
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -11,6 +12,7 @@ use std::process::ExitCode;
 use bevy::math::UVec2;
 use bevy_stick3d::editor::{self, EditorError, EditorOptions};
 use bevy_stick3d::launch;
+use bevy_stick3d::prelude::DrawingOrder;
 use clap::Parser;
 
 /// Draw a stick figure, see the body.
@@ -28,6 +30,9 @@ struct Arguments {
     /// From where to look at the body, degrees: 0 for the side that is drawn, 90 from the right of it.
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = parse_degrees)]
     yaw: Option<f32>,
+    /// In which order to draw: any, in which limbs are told apart by a rule, or guided, bone by bone. O changes it.
+    #[arg(long, value_name = "any|guided", default_value = "any", value_parser = parse_order)]
+    order: DrawingOrder,
     /// A sketch file to begin with.
     #[arg(long, value_name = "FILE")]
     sketch: Option<PathBuf>,
@@ -54,6 +59,14 @@ fn parse_size(text: &str) -> Result<UVec2, String> {
     }
 }
 
+fn parse_order(text: &str) -> Result<DrawingOrder, String> {
+    match text {
+        "any" => Ok(DrawingOrder::Any),
+        "guided" => Ok(DrawingOrder::Guided),
+        _ => Err(format!("\"{text}\" is no order; write any or guided")),
+    }
+}
+
 fn parse_degrees(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(degrees) if degrees.abs() <= 360.0 => Ok(degrees),
@@ -74,6 +87,7 @@ fn main() -> ExitCode {
         figure: arguments.figure,
         models: arguments.model,
         yaw_rad: arguments.yaw.map(f32::to_radians),
+        order: arguments.order,
         sketch: arguments.sketch,
         clip: arguments.clip,
         at_s: arguments.at,

@@ -282,3 +282,25 @@ fn no_joint_jumps_while_another_is_dragged() {
         "without keeping to what is shown it would jump"
     );
 }
+
+#[test]
+fn joints_that_are_guessed_or_pinned_have_to_be_the_figures() {
+    let mut stage = Stage::new(sketch("walk"));
+    let before = stage.latent().to_vec();
+    stage.redraw(sketch("walk").with_pinned([joint("hand_l")]));
+    assert_eq!(
+        stage.app.world().get::<FigureStatus>(stage.man),
+        Some(&FigureStatus::Ready)
+    );
+    stage.redraw(sketch("wave").with_guessed([joint("hand_l"), 99]));
+    let status = stage.app.world().get::<FigureStatus>(stage.man).unwrap();
+    let FigureStatus::Failed(problem) = status else {
+        panic!("{status:?}");
+    };
+    assert!(
+        problem.contains("99") && problem.contains("human"),
+        "{problem}"
+    );
+    stage.redraw(sketch("walk"));
+    assert_eq!(stage.latent(), before);
+}

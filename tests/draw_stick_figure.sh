@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Draws a sketch on the pose editor's canvas with the real pointer: path order, one stroke per bone, a few pixels of
-# hand tremor. Then saves it from the editor, and fails unless every joint was read where it was drawn.
+# Draws a sketch on the pose editor's canvas with the real pointer, one stroke per bone, with a few pixels of hand tremor:
+# along the sketch path or, with ORDER=any, in a shuffled order. Then saves it from the editor, and fails unless every joint
+# was read where it was drawn. In any order nothing tells left from right but a rule, so pairs may be exchanged then.
 #
 #   xvfb-run -s "-screen 0 1600x900x24" \
 #     tests/draw_stick_figure.sh target/release/examples/pose_editor assets/sketches/horse_walk.json [OUT.png]
@@ -41,21 +42,14 @@ while read -r joint x y; do at[$joint]="$x $y"; done <"$work/places"
 test "${#at[@]}" -gt 2
 
 cd "$work"
-"$editor" --figure "$name" --size 1600x900 &
+order="${ORDER:-guided}"
+"$editor" --figure "$name" --size 1600x900 --order "$order" &
 pid=$!
 for _ in $(seq 120); do
   sleep 1
   xdotool search --name 'stick3d pose editor' >/dev/null 2>&1 && break
 done
 sleep 6
-
-# The order of the path says which limb is which; in any order a rule would.
-xdotool windowfocus "$(xdotool search --name 'stick3d pose editor' | tail -n 1)"
-sleep 1
-xdotool keydown o
-sleep 1
-xdotool keyup o
-sleep 2
 
 RANDOM=7
 tremor() { echo $((RANDOM % 5 - 2)); }
@@ -74,15 +68,23 @@ stroke() {
   sleep 0.15
 }
 
-# Every bone of the path once, in its order.
-declare -A drawn
+# Every bone of the path once, in its order or another.
+declare -A listed
 before=""
+bones=()
 for joint in $(sed -n '/^ *path: *\[/,/\]/p' "$figures/$name.ron" | grep -o '"[a-z_]*"' | tr -d '"'); do
-  if [ -n "$before" ] && [ -z "${drawn[$before-$joint]:-}" ] && [ -z "${drawn[$joint-$before]:-}" ]; then
-    stroke "$before" "$joint"
-    drawn[$before-$joint]=1
+  if [ -n "$before" ] && [ -z "${listed[$before-$joint]:-}" ] && [ -z "${listed[$joint-$before]:-}" ]; then
+    bones+=("$before $joint")
+    listed[$before-$joint]=1
   fi
   before="$joint"
+done
+if [ "$order" = any ]; then
+  mapfile -t bones < <(printf '%s\n' "${bones[@]}" | shuf --random-source=<(yes 7))
+fi
+for bone in "${bones[@]}"; do
+  read -r -a ends <<<"$bone"
+  stroke "${ends[@]}"
 done
 
 # Where there is no window manager nobody has given the window the keyboard.
@@ -103,8 +105,18 @@ sleep 5
 [ -z "$out" ] || import -window root "$out"
 
 joints "${name}_sketch.json" | sort >read
-awk -v u="$unit_per_px" -v ox="${origin[0]}" -v oy="${origin[1]}" '
+awk -v u="$unit_per_px" -v ox="${origin[0]}" -v oy="${origin[1]}" -v order="$order" '
+  function distance(joint, px, py) {
+    if (!(joint in x)) return 1e9
+    return sqrt(((px - ox) * u - x[joint]) ^ 2 + ((oy - py) * u - y[joint]) ^ 2)
+  }
+  function mirror(joint) {
+    if (joint ~ /r$/) return substr(joint, 1, length(joint) - 1) "l"
+    if (joint ~ /l$/) return substr(joint, 1, length(joint) - 1) "r"
+    return joint
+  }
   NR == FNR { x[$1] = $2; y[$1] = $3; next }
-  { dx = ($2 - ox) * u - x[$1]; dy = (oy - $3) * u - y[$1]; off = sqrt(dx * dx + dy * dy); joints++
-    if (!($1 in x) || off > 25) { printf "%s was read %.0f units from where it was drawn\n", $1, off; bad = 1 } }
+  { off = distance($1, $2, $3); joints++
+    if (order == "any" && off > 25) off = distance(mirror($1), $2, $3)
+    if (off > 25) { printf "%s was read %.0f units from where it was drawn\n", $1, off; bad = 1 } }
   END { if (bad || joints == 0) exit 1; printf "all %d joints were read where they were drawn\n", joints }' read places

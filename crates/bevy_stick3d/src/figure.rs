@@ -2,6 +2,7 @@
 
 use bevy::prelude::*;
 use stick3d_figure::{Figure, Sketch, SketchError};
+use stick3d_model::JointMark;
 
 use crate::alternatives::SketchAlternatives;
 use crate::model_asset::StickModel;
@@ -63,6 +64,10 @@ impl StickFigure {
 pub struct StickSketch {
     /// One point per joint, in the order of the figure's joints.
     pub points: Vec<Vec2>,
+    /// Joints that were not drawn: they stand somewhere, and say nothing of the body.
+    pub guessed: Vec<usize>,
+    /// Joints that the body has to have where they are, however crooked the rest is drawn.
+    pub pinned: Vec<usize>,
 }
 
 impl StickSketch {
@@ -70,7 +75,22 @@ impl StickSketch {
     pub fn new(points: impl Into<Vec<Vec2>>) -> Self {
         Self {
             points: points.into(),
+            ..default()
         }
+    }
+
+    /// The sketch with some joints that were not drawn.
+    #[must_use]
+    pub fn with_guessed(mut self, joints: impl IntoIterator<Item = usize>) -> Self {
+        self.guessed.extend(joints);
+        self
+    }
+
+    /// The sketch with some joints that hold the body.
+    #[must_use]
+    pub fn with_pinned(mut self, joints: impl IntoIterator<Item = usize>) -> Self {
+        self.pinned.extend(joints);
+        self
     }
 
     /// A sketch of any figure from named joints: `[("forehead", vec2(0.0, 1.7)), ...]`.
@@ -104,6 +124,35 @@ impl StickSketch {
         Self::named(Figure::horse(), joints)
     }
 
+    /// What each joint of a figure says of the body.
+    ///
+    /// # Errors
+    /// A sentence that names a joint which the figure does not have; nothing is written then.
+    pub(crate) fn write_marks(
+        &self,
+        figure: &Figure,
+        marks: &mut Vec<JointMark>,
+    ) -> Result<(), String> {
+        let count = figure.joint_count();
+        let mut all = self.guessed.iter().chain(&self.pinned);
+        if let Some(joint) = all.find(|joint| **joint >= count) {
+            return Err(format!(
+                "the sketch guesses or pins joint {joint}, but {} has joints 0 to {}",
+                figure.name,
+                count - 1
+            ));
+        }
+        marks.clear();
+        marks.resize(count, JointMark::Drawn);
+        self.guessed
+            .iter()
+            .for_each(|joint| marks[*joint] = JointMark::Guessed);
+        self.pinned
+            .iter()
+            .for_each(|joint| marks[*joint] = JointMark::Pinned);
+        Ok(())
+    }
+
     /// The checked sketch of a figure.
     ///
     /// # Errors
@@ -115,17 +164,13 @@ impl StickSketch {
 
 impl From<Sketch> for StickSketch {
     fn from(sketch: Sketch) -> Self {
-        Self {
-            points: sketch.points().to_vec(),
-        }
+        Self::new(sketch.points())
     }
 }
 
 impl From<&Sketch> for StickSketch {
     fn from(sketch: &Sketch) -> Self {
-        Self {
-            points: sketch.points().to_vec(),
-        }
+        Self::new(sketch.points())
     }
 }
 

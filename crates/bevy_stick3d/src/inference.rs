@@ -207,7 +207,7 @@ fn encode_sketches(
         if let Some(sketch) = sketch
             && (other_model || sketch.is_changed() || alternatives.has_wish())
         {
-            match alternatives.follow(&mut ready.inference, &sketch.points, is_draft) {
+            match alternatives.follow(&mut ready.inference, &sketch, is_draft) {
                 Ok(()) => {
                     if let Some(shown) = alternatives.shown() {
                         latent.0.clone_from(&shown.latent);

@@ -28,7 +28,7 @@ pub mod weights;
 pub use architecture::Architecture;
 pub use file::ModelError;
 pub use final_layer::FinalLayer;
-pub use infer::{Alternative, Alternatives, InferError, Inference};
+pub use infer::{Alternative, Alternatives, InferError, Inference, JointMark, MarkedSketch};
 pub use latent::{LatentKey, LatentPath, Motion};
 pub use metadata::Metadata;
 pub use model::{Model, ModelParts};

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{Vec2, Vec3};
 use stick3d_figure::figure::Figure;
 use stick3d_figure::sketch::Sketch;
-use stick3d_model::{Alternatives, Inference, Model};
+use stick3d_model::{Alternatives, InferError, Inference, JointMark, MarkedSketch, Model};
 
 fn repository(path: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -170,4 +170,92 @@ fn a_flipped_limb_points_the_other_way_and_stays_on_the_drawing() {
             figure.name
         );
     }
+}
+
+/// The first answer to a sketch of which some joints are marked.
+fn marked(
+    inference: &mut Inference,
+    sketch: &Sketch,
+    joints: &[usize],
+    mark: JointMark,
+) -> Vec<Vec3> {
+    let mut marks = vec![JointMark::Drawn; sketch.points().len()];
+    joints.iter().for_each(|joint| marks[*joint] = mark);
+    let marks = &marks;
+    let mut answers = Alternatives::default();
+    inference
+        .infer(MarkedSketch { sketch, marks }, &mut answers)
+        .expect("the sketch is sound");
+    answers.first().expect("there is an answer").joints.clone()
+}
+
+#[test]
+fn a_limb_that_was_not_drawn_says_nothing_and_a_pinned_joint_holds_the_body() {
+    let human = Figure::human();
+    let mut inference = ready(human);
+    let hand = human.joint_index("hand_l").unwrap();
+    let limb = human
+        .limbs()
+        .into_iter()
+        .find(|limb| limb.joints.contains(&hand))
+        .unwrap();
+    let (mut drawn_off, mut guessed_off, mut pinned_off) = (0.0, 0.0, 0.0);
+    for (_, sketch) in sketches(human) {
+        // Where the limb stands is impossible: three times as long, straight up.
+        let mut points = sketch.points().to_vec();
+        let size = sketch.scale(human);
+        for (step, joint) in limb.joints.iter().enumerate() {
+            points[*joint] = points[limb.base] + Vec2::Y * (3.0 + 2.0 * step as f32) * size;
+        }
+        let wrong = Sketch::new(human, points).unwrap();
+        // How far the joints of the rest are off what was drawn of them.
+        let rest: Vec<usize> = (0..human.joint_count())
+            .filter(|joint| !limb.joints.contains(joint))
+            .collect();
+        let of_rest = |joints: &[Vec3]| -> f32 {
+            let drawn: Vec<Vec2> = rest.iter().map(|joint| sketch.points()[*joint]).collect();
+            let found: Vec<Vec3> = rest.iter().map(|joint| joints[*joint]).collect();
+            off_the_drawing(human, &drawn, &found)
+        };
+        drawn_off += of_rest(&marked(&mut inference, &wrong, &[], JointMark::Drawn));
+        guessed_off += of_rest(&marked(
+            &mut inference,
+            &wrong,
+            &limb.joints,
+            JointMark::Guessed,
+        ));
+        // A crooked drawing whose hand is meant: the other arm is drawn far too long.
+        let mut points = sketch.points().to_vec();
+        let other = human.mirror_of(hand);
+        points[other] += 0.8 * size * Vec2::X;
+        let crooked = Sketch::new(human, points).unwrap();
+        let hold = |joints: &[Vec3]| -> f32 {
+            let drawn: Vec<Vec2> = crooked.points().to_vec();
+            let flat: Vec<Vec2> = joints.iter().map(|joint| joint.truncate()).collect();
+            let (a, b) = (human.root, hand);
+            let (from, to) = (drawn[b] - drawn[a], flat[b] - flat[a]);
+            from.angle_to(to).abs()
+        };
+        let free = hold(&marked(&mut inference, &crooked, &[], JointMark::Drawn));
+        let held = hold(&marked(
+            &mut inference,
+            &crooked,
+            &[human.root, hand],
+            JointMark::Pinned,
+        ));
+        pinned_off += held - free;
+    }
+    assert!(guessed_off < 0.8 * drawn_off, "{guessed_off} {drawn_off}");
+    assert!(pinned_off < 0.0, "{pinned_off}");
+    let sketch = Sketch::template(human);
+    let marks = &[JointMark::Drawn; 3];
+    let sketch = MarkedSketch {
+        sketch: &sketch,
+        marks,
+    };
+    let refused = inference.infer(sketch, &mut Alternatives::default());
+    assert!(
+        matches!(refused, Err(InferError::Length { found: 3, .. })),
+        "{refused:?}"
+    );
 }

@@ -5,9 +5,9 @@ mod nearness;
 use bevy::prelude::*;
 use stick3d_figure::Sketch;
 use stick3d_figure::figure::Limb;
-use stick3d_model::{Alternative, Alternatives, InferError, Inference};
+use stick3d_model::{Alternative, Alternatives, InferError, Inference, JointMark, MarkedSketch};
 
-use crate::figure::{Latent, StickFigure};
+use crate::figure::{Latent, StickFigure, StickSketch};
 use crate::inference::StickInference;
 use nearness::{farthest_elsewhere_m, is_flipped, is_same_drawing, nearest, turned};
 
@@ -54,6 +54,8 @@ pub struct SketchAlternatives {
     found: Alternatives,
     /// Of which they are.
     sketch: Option<Sketch>,
+    /// What its joints say.
+    marks: Vec<JointMark>,
     /// It is unfinished.
     is_draft: bool,
     shown: Alternative,
@@ -129,21 +131,26 @@ impl SketchAlternatives {
     pub(crate) fn follow(
         &mut self,
         inference: &mut Inference,
-        points: &[Vec2],
+        drawn: &StickSketch,
         is_draft: bool,
     ) -> Result<(), String> {
         let wish = std::mem::take(&mut self.wish);
-        let sketch =
-            Sketch::new(inference.figure(), points.to_vec()).map_err(|error| error.to_string())?;
+        let figure = inference.figure();
+        let sketch = drawn.to_sketch(figure).map_err(|error| error.to_string())?;
+        drawn.write_marks(figure, &mut self.marks)?;
         let before = self.sketch.take();
         self.chosen = None;
+        let marked = MarkedSketch {
+            sketch: &sketch,
+            marks: &self.marks,
+        };
         inference
-            .infer(&sketch, &mut self.found)
+            .infer(marked, &mut self.found)
             .map_err(|error| error.to_string())?;
         let was_draft = std::mem::replace(&mut self.is_draft, is_draft);
         let is_whole = !is_draft && !was_draft;
-        let is_same =
-            is_whole && before.is_some_and(|before| is_same_drawing(before.points(), points));
+        let is_same = is_whole
+            && before.is_some_and(|before| is_same_drawing(before.points(), &drawn.points));
         match wish {
             Wish::Body(latent) if self.show_latent(inference, &latent).is_ok() => {}
             Wish::Same if is_same => self
@@ -184,7 +191,11 @@ impl SketchAlternatives {
             return Ok(self.choose(index));
         }
         let mut latent = vec![0.0; inference.latent_len()];
-        inference.flip_limb(sketch, &self.shown.latent, limb, &mut latent)?;
+        let marked = MarkedSketch {
+            sketch,
+            marks: &self.marks,
+        };
+        inference.flip_limb(marked, &self.shown.latent, limb, &mut latent)?;
         let before = self.shown.clone();
         self.show_latent(inference, &latent)?;
         let is_done = is_flipped(&before, &self.shown, limb);
@@ -216,7 +227,11 @@ impl SketchAlternatives {
             return Ok(());
         }
         let mut pulled = vec![0.0; inference.latent_len()];
-        inference.flip_limb(sketch, &self.before.latent, &nothing, &mut pulled)?;
+        let marked = MarkedSketch {
+            sketch,
+            marks: &self.marks,
+        };
+        inference.flip_limb(marked, &self.before.latent, &nothing, &mut pulled)?;
         self.show_latent(inference, &pulled)?;
         if farthest_elsewhere_m(&self.before, &self.shown, &nothing) >= jump_m {
             self.show(index.unwrap_or(0));

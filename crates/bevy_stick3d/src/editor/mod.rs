@@ -39,6 +39,7 @@ pub use timeline::clip::ClipFileError;
 
 use self::session::{Opening, SessionPlugin, SettleDrawings};
 use crate::schedule::Stick3dSystems;
+use crate::sketch_input::DrawingOrder;
 
 /// The editor, for an app that has Bevy's default plugins, `EguiPlugin` and
 /// [`Stick3dPlugin`](crate::Stick3dPlugin). It shows itself in the primary window.
@@ -53,6 +54,8 @@ pub struct PoseEditorPlugin {
     pub clip: Option<FirstClip>,
     /// From where to look at the bodies: turned about the vertical, 0 for the side that is drawn.
     pub yaw_rad: Option<f32>,
+    /// In which order strokes are expected.
+    pub order: DrawingOrder,
     /// Whether a picture will be taken, in which nothing moves.
     pub is_picture: bool,
 }
@@ -71,6 +74,7 @@ impl Plugin for PoseEditorPlugin {
                 sketch: self.sketch.clone(),
                 clip: self.clip.clone(),
                 yaw_rad: self.yaw_rad,
+                order: self.order,
             }),
             viewport::ViewportPlugin,
         ))

@@ -15,6 +15,7 @@ use super::timeline::clip::ClipFileError;
 use super::words::known_figures;
 use crate::embedded::EMBEDDED_MODELS;
 use crate::launch::{Launch, LaunchError};
+use crate::sketch_input::DrawingOrder;
 use crate::{Stick3dPlugin, StickModel};
 
 /// What the editor is started with.
@@ -32,6 +33,8 @@ pub struct EditorOptions {
     pub at_s: Option<f32>,
     /// From where to look at the body: turned about the vertical, 0 for the side that is drawn.
     pub yaw_rad: Option<f32>,
+    /// In which order strokes are expected.
+    pub order: DrawingOrder,
     /// Take a picture of the editor without a window, write it here as PNG, and end.
     pub screenshot: Option<PathBuf>,
     /// Size of the window or of the picture, pixels; 1600 by 900 when `None`.
@@ -137,6 +140,7 @@ pub fn run(options: &EditorOptions) -> Result<(), EditorError> {
                 sketch,
                 clip,
                 yaw_rad: options.yaw_rad,
+                order: options.order,
                 is_picture: options.screenshot.is_some(),
             },
         ));

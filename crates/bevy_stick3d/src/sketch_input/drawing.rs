@@ -160,7 +160,12 @@ impl SketchDrawing {
         self.reading.along_path
     }
 
-    /// Per joint whether it is pinned: it stays where it is when others are dragged.
+    /// The joints that are pinned, in their order.
+    pub fn pinned(&self) -> impl Iterator<Item = usize> + '_ {
+        self.ink.pins.iter().copied()
+    }
+
+    /// Per joint whether it is pinned: it stays where it is when others are dragged, and the body has it there.
     pub fn pins(&self) -> Vec<bool> {
         let joints = 0..self.figure.joint_count();
         joints.map(|joint| self.ink.pins.contains(&joint)).collect()

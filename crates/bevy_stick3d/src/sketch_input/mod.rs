@@ -246,12 +246,16 @@ fn tell_changes(
 
 /// The sketch of a drawing as a figure should show it.
 fn pose_figure(figure: &mut EntityCommands, drawing: &SketchDrawing, preview: bool) {
+    let pinned = drawing.pinned();
     if let Some(sketch) = drawing.sketch() {
         figure
-            .try_insert(StickSketch::from(sketch))
+            .try_insert(StickSketch::from(sketch).with_pinned(pinned))
             .try_remove::<SketchPreview>();
     } else if let Some(points) = drawing.guess().filter(|_| preview) {
-        figure.try_insert((StickSketch::new(points), SketchPreview));
+        let joints = drawing.joints().iter().enumerate();
+        let guessed = joints.filter_map(|(joint, place)| place.is_none().then_some(joint));
+        let sketch = StickSketch::new(points).with_guessed(guessed);
+        figure.try_insert((sketch, SketchPreview));
     } else {
         figure.try_remove::<(StickSketch, SketchPreview)>();
     }

@@ -181,6 +181,28 @@ impl Figure {
             .map_or(0.0, |&[a, b]| self.template[a].distance(self.template[b]))
     }
 
+    /// The bones from the root outward, each as (nearer the root, farther from it): a bone comes after the one that it hangs
+    /// on. Of a figure's bones, which are a tree over all joints, none is left out.
+    pub fn bones_outward(&self) -> Vec<[usize; 2]> {
+        let mut reached = vec![false; self.joints.len()];
+        if let Some(root) = reached.get_mut(self.root) {
+            *root = true;
+        }
+        let mut outward = Vec::with_capacity(self.bones.len());
+        for _ in &self.bones {
+            for &[a, b] in &self.bones {
+                let bone = match (reached[a], reached[b]) {
+                    (true, false) => [a, b],
+                    (false, true) => [b, a],
+                    _ => continue,
+                };
+                reached[bone[1]] = true;
+                outward.push(bone);
+            }
+        }
+        outward
+    }
+
     /// The largest distance between two points of the template, metres.
     pub fn template_extent_m(&self) -> f32 {
         let pairs = self
@@ -194,6 +216,20 @@ impl Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bones_lead_outward_and_reach_every_joint() {
+        for figure in Figure::shipped() {
+            let outward = figure.bones_outward();
+            assert_eq!(outward.len(), figure.bones.len());
+            let mut reached = vec![figure.root];
+            for [near, far] in outward {
+                assert!(reached.contains(&near) && !reached.contains(&far));
+                reached.push(far);
+            }
+            assert_eq!(reached.len(), figure.joint_count());
+        }
+    }
 
     #[test]
     fn the_human_is_the_one_of_the_paper() {

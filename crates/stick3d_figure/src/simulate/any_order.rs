@@ -86,32 +86,22 @@ pub fn flat_pose(figure: &Figure, rng: &mut ChaCha8Rng) -> Vec<Vec2> {
         },
         1.0,
     );
-    let mut placed: Vec<Option<(Vec2, f32)>> = vec![None; figure.joint_count()];
     let roll = rng.random_range(-freedom.roll..freedom.roll);
-    placed[figure.root] = Some((Vec2::ZERO, roll));
-    for _ in &figure.bones {
-        for &[a, b] in &figure.bones {
-            let (from, to) = match (placed[a], placed[b]) {
-                (Some(_), None) => (a, b),
-                (None, Some(_)) => (b, a),
-                _ => continue,
-            };
-            let Some((at, turned)) = placed[from] else {
-                continue;
-            };
-            let sides = [figure.joints[from].side, figure.joints[to].side];
-            let far = match sides {
-                [Side::Center, Side::Center] => freedom.center,
-                [Side::Center, _] => freedom.first,
-                _ => freedom.later,
-            };
-            let turn = turned + rng.random_range(-far..far);
-            let bone = (figure.template[to] - figure.template[from]) * facing;
-            let bone = Vec2::from_angle(turn.to_radians()).rotate(bone);
-            placed[to] = Some((at + bone * rng.random_range(0.85..1.15), turn));
-        }
+    let mut placed = vec![(Vec2::ZERO, roll); figure.joint_count()];
+    for [from, to] in figure.bones_outward() {
+        let (at, turned) = placed[from];
+        let sides = [figure.joints[from].side, figure.joints[to].side];
+        let far = match sides {
+            [Side::Center, Side::Center] => freedom.center,
+            [Side::Center, _] => freedom.first,
+            _ => freedom.later,
+        };
+        let turn = turned + rng.random_range(-far..far);
+        let bone = (figure.template[to] - figure.template[from]) * facing;
+        let bone = Vec2::from_angle(turn.to_radians()).rotate(bone);
+        placed[to] = (at + bone * rng.random_range(0.85..1.15), turn);
     }
-    placed.into_iter().flatten().map(|(at, _)| at).collect()
+    placed.into_iter().map(|(at, _)| at).collect()
 }
 
 /// Whether a flat drawing of a pose, metres, says where its joints are: limbs are not folded flat, ends do not lie on the

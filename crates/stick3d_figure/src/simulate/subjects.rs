@@ -52,31 +52,15 @@ fn swung(
     loop {
         let yaw =
             rng.random_range(-0.6..0.6) + std::f32::consts::PI * f32::from(rng.random::<bool>());
-        let mut placed: Vec<Option<(Vec3, Quat)>> = vec![None; figure.joint_count()];
-        placed[figure.root] = Some((Vec3::ZERO, Quat::from_rotation_y(yaw)));
-        for _ in 0..figure.bones.len() {
-            for &[a, b] in &figure.bones {
-                let (from, to) = match (placed[a], placed[b]) {
-                    (Some(_), None) => (a, b),
-                    (None, Some(_)) => (b, a),
-                    _ => continue,
-                };
-                let Some((at, turned)) = placed[from] else {
-                    continue;
-                };
-                let line = (figure.template[to] - figure.template[from]).extend(0.0);
-                let swing = Quat::from_rotation_arc(
-                    line.normalize(),
-                    in_cone(rng, line.normalize(), max_deg),
-                );
-                placed[to] = Some((at + turned * swing * line, turned * swing));
-            }
+        let mut placed = vec![(Vec3::ZERO, Quat::from_rotation_y(yaw)); figure.joint_count()];
+        for [from, to] in figure.bones_outward() {
+            let (at, turned) = placed[from];
+            let line = (figure.template[to] - figure.template[from]).extend(0.0);
+            let swing =
+                Quat::from_rotation_arc(line.normalize(), in_cone(rng, line.normalize(), max_deg));
+            placed[to] = (at + turned * swing * line, turned * swing);
         }
-        let flat: Vec<Vec2> = placed
-            .iter()
-            .flatten()
-            .map(|(at, _)| at.truncate())
-            .collect();
+        let flat: Vec<Vec2> = placed.iter().map(|(at, _)| at.truncate()).collect();
         let drawable = figure
             .bones
             .iter()

@@ -1,6 +1,6 @@
 //! How points of a body move when the raw numbers behind its rotations change.
 
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 use super::Rotations;
 use super::rotations::{SMALLEST_SQUARE, column_pair, turn_at};
@@ -9,7 +9,7 @@ impl Rotations {
     /// The derivative of a point's coordinates by the raw numbers.
     ///
     /// A half-way rotation is taken to turn by half of what both its bones turn, which is exact for equal bones and close
-    /// for bent ones: enough for the steps of a search, which look at the point again.
+    /// for bent ones: enough for the steps of a search, which look at the point again. [`Rotations::pull_back`] is exact.
     ///
     /// # Shapes
     /// - `code`: `[3][2 · bone_count]`; `features`: what [`Rotations::expand`] makes of it
@@ -44,6 +44,57 @@ impl Rotations {
         }
     }
 
+    /// From the derivative of a number by the features to that by the raw numbers.
+    ///
+    /// A rotation's derivative is the torque on it. That on the rotation half way between two bones is shared between them:
+    /// with `w` turning either by a little, the way between turns by `(I + Q)^-1 (w_b + Q w_a)`, where `Q` leads from `a`
+    /// half way to `b`; `(I + Q)^-1` is half of the identity and of the cross product with Q's axis times the tangent of half
+    /// its angle.
+    ///
+    /// # Shapes
+    /// - `code`, `by_code`: `[3][2 · bone_count]`
+    /// - `features`: what [`Rotations::expand`] makes of the code
+    /// - `by_features`: `[3][3 · (bone_count + halves)]`
+    /// - `torques`: memory, `[bone_count]`
+    pub fn pull_back(
+        &self,
+        code: &[f32],
+        features: &[f32],
+        by_features: &[f32],
+        torques: &mut [Vec3],
+        by_code: &mut [f32],
+    ) {
+        let (columns, width) = (self.code_columns(), self.feature_columns());
+        let torque = |slot: usize| {
+            let (turn, by_turn) = (
+                turn_at(features, width, slot),
+                turn_at(by_features, width, slot),
+            );
+            let of_columns = (0..3).map(|j| turn.col(j).cross(by_turn.col(j)));
+            of_columns.sum::<Vec3>()
+        };
+        for (bone, out) in torques.iter_mut().enumerate() {
+            *out = torque(bone);
+        }
+        for (index, [a, b]) in self.halves.iter().enumerate() {
+            let slot = self.bone_count + index;
+            let [a, b] = [*a, *b].map(usize::from);
+            let half = turn_at(features, width, slot) * turn_at(features, width, a).transpose();
+            let torque = torque(slot);
+            let across = half_tangent(half).cross(torque);
+            torques[a] += 0.5 * (torque - across);
+            torques[b] += 0.5 * (torque + across);
+        }
+        for (bone, torque) in torques.iter().enumerate() {
+            let (u, v) = column_pair(code, columns, bone);
+            let (by_u, by_v) = slope_of_pair(u, v, *torque);
+            for axis in 0..3 {
+                by_code[axis * columns + 2 * bone] = by_u[axis];
+                by_code[axis * columns + 2 * bone + 1] = by_v[axis];
+            }
+        }
+    }
+
     /// From each bone's pivot to the point, as far as the bone carries it.
     fn arms(&self, features: &[f32], row: &[f32], arms: &mut [Vec3]) {
         let width = self.feature_columns();
@@ -64,6 +115,18 @@ impl Rotations {
             }
         }
     }
+}
+
+/// The axis of a rotation, as long as the tangent of half its angle.
+fn half_tangent(turn: Mat3) -> Vec3 {
+    let twice_sine = Vec3::new(
+        turn.y_axis.z - turn.z_axis.y,
+        turn.z_axis.x - turn.x_axis.z,
+        turn.x_axis.y - turn.y_axis.x,
+    );
+    let trace = turn.x_axis.x + turn.y_axis.y + turn.z_axis.z;
+    // Half-way rotations turn by at most a right angle, where the divisor is 2.
+    twice_sine / (1.0 + trace).max(1.0)
 }
 
 /// What `gradient` by the small turn of a rotation is by the two columns that Gram and Schmidt make the rotation of.
@@ -134,6 +197,43 @@ mod tests {
                 found.distance(expected) < tolerance,
                 "{i}: {found} {expected}"
             );
+        }
+    }
+
+    #[test]
+    fn pulled_back_derivatives_are_differences() {
+        let rotations = Rotations {
+            bone_count: 3,
+            halves: vec![[0, 1], [2, 1]],
+        };
+        let weights: Vec<f32> = (0..45).map(|i| (2.1 * i as f32).sin()).collect();
+        let sum = |code: &[f32]| -> f64 {
+            let mut features = vec![0.0; 45];
+            rotations.expand(code, &mut features);
+            let pairs = features.iter().zip(&weights);
+            pairs.map(|(a, b)| f64::from(*a) * f64::from(*b)).sum()
+        };
+        for seed in 0..5 {
+            let code: Vec<f32> = (0..18)
+                .map(|i| (1.7 * i as f32 + seed as f32).sin() + 0.3 * (i as f32).cos())
+                .collect();
+            let mut features = vec![0.0; 45];
+            rotations.expand(&code, &mut features);
+            let (mut torques, mut found) = (vec![Vec3::ZERO; 3], vec![0.0; 18]);
+            rotations.pull_back(&code, &features, &weights, &mut torques, &mut found);
+            for i in 0..18 {
+                let moved = |by: f32| {
+                    let mut code = code.clone();
+                    code[i] += by;
+                    sum(&code)
+                };
+                let expected = (moved(2e-3) - moved(-2e-3)) / 4e-3;
+                assert!(
+                    (f64::from(found[i]) - expected).abs() < 5e-3 * (1.0 + expected.abs()),
+                    "{seed} {i}: {} {expected}",
+                    found[i]
+                );
+            }
         }
     }
 

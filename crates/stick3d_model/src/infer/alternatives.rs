@@ -37,6 +37,9 @@ impl Alternative {
     }
 }
 
+/// The first answer is at least so likely, share of the likeliest one's probability.
+const LIKELY_SHARE: f32 = 0.25;
+
 /// Alternatives, the likeliest first, and memory for them that is used again.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Alternatives {
@@ -79,7 +82,7 @@ impl Alternatives {
     }
 
     /// Makes probabilities of the weights, merges those of which no joint is as far apart as `same_m`, and puts the first
-    /// answer first: the one that is nearest to all, each counted by its probability; then the likeliest.
+    /// answer first: of the likely ones that which is nearest to all, each counted by its probability; then the likeliest.
     pub(super) fn rank(&mut self, same_m: f32) {
         let list = &mut self.list[..self.len];
         list.sort_unstable_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
@@ -96,7 +99,10 @@ impl Alternatives {
                 .map(|other| other.probability * candidate.distance_m(other))
                 .sum()
         };
-        let first = (0..list.len()).min_by(|a, b| regret(&list[*a]).total_cmp(&regret(&list[*b])));
+        let highest = list.iter().map(|a| a.probability).fold(0.0, f32::max);
+        let likely =
+            (0..list.len()).filter(|index| list[*index].probability >= LIKELY_SHARE * highest);
+        let first = likely.min_by(|a, b| regret(&list[*a]).total_cmp(&regret(&list[*b])));
         if let Some(first) = first {
             list[..=first].rotate_right(1);
         }

@@ -4,8 +4,9 @@ use glam::{Vec2, Vec3};
 use stick3d_figure::figure::Limb;
 
 use super::gaussian::Gaussian;
+use super::marks::JointMark;
 use super::noise;
-use super::refine::{Body, Refiner};
+use super::refine::{Body, Drawn, Refiner};
 use crate::kernels;
 
 /// How often the body is pulled and looked at again.
@@ -103,16 +104,20 @@ pub(super) fn write_joints(body: &mut Body<'_>, latent: &[f32], joints: &mut [Ve
 
 /// Where the joints of a body should come to be: the limb as far before its base as it was behind it, all on the sketch plane
 /// where they are drawn.
-pub(super) fn goals_of(joints: &[Vec3], limb: &Limb, drawn: &[Vec2]) -> Vec<Vec3> {
+pub(super) fn goals_of(joints: &[Vec3], limb: &Limb, drawn: Drawn<'_>) -> Vec<Vec3> {
     let flat: Vec<Vec2> = joints.iter().map(|joint| joint.truncate()).collect();
     let mut aligned = flat.clone();
-    noise::align(drawn, &flat, &mut aligned);
+    noise::align(drawn.points, drawn.marks, &flat, &mut aligned);
     let base = joints[limb.base].z;
     let depth = |joint: usize| match limb.joints.contains(&joint) {
         true => 2.0 * base - joints[joint].z,
         false => joints[joint].z,
     };
+    let place = |joint: usize| match drawn.marks[joint] {
+        JointMark::Guessed => flat[joint],
+        JointMark::Drawn | JointMark::Pinned => aligned[joint],
+    };
     (0..joints.len())
-        .map(|joint| aligned[joint].extend(depth(joint)))
+        .map(|joint| place(joint).extend(depth(joint)))
         .collect()
 }

@@ -5,6 +5,7 @@ mod flip;
 mod gaussian;
 mod hypotheses;
 mod joint_map;
+mod marks;
 mod noise;
 mod perceptron;
 mod refine;
@@ -12,6 +13,7 @@ mod slope;
 
 pub use alternatives::{Alternative, Alternatives};
 pub use hypotheses::Hypotheses;
+pub use marks::{JointMark, MarkedSketch};
 
 use glam::Vec3;
 use stick3d_figure::figure::{Figure, Limb};
@@ -21,7 +23,7 @@ use thiserror::Error;
 
 use self::joint_map::JointMap;
 use self::perceptron::Perceptron;
-use self::refine::{Body, Refiner};
+use self::refine::{Body, Drawn, Refiner};
 use crate::file::ModelError;
 use crate::final_layer::{FinalLayer, FinalScratch};
 use crate::latent::{LongestEdges, Probe, Trust};
@@ -75,6 +77,8 @@ pub struct Inference {
     refiner: Option<Refiner>,
     latent_len: usize,
     input: Vec<f32>,
+    /// What the joints of the sketch say.
+    marks: Vec<JointMark>,
     /// Memory for [`Inference::encode`].
     alternatives: Alternatives,
     /// Memory for one body's joints.
@@ -104,6 +108,7 @@ impl Inference {
             adjacency,
             latent_len: model.latent_len(),
             input: vec![0.0; model.figure().input_len()],
+            marks: vec![JointMark::Drawn; model.figure().joint_count()],
             alternatives: Alternatives::default(),
             found: vec![Vec3::ZERO; model.figure().joint_count()],
         })
@@ -162,14 +167,18 @@ impl Inference {
     /// The bodies that a sketch may mean: one per hypothesis of Encoder2D, pulled onto the drawing, those that are alike
     /// merged. Their order is that of [`Alternatives`].
     ///
+    /// A plain `&Sketch` is one of which every joint was drawn.
+    ///
     /// # Errors
-    /// As [`Inference::encode`].
-    pub fn infer(
+    /// As [`Inference::encode`], and [`InferError::Length`] for marks of another number of joints.
+    pub fn infer<'s>(
         &mut self,
-        sketch: &Sketch,
+        sketch: impl Into<MarkedSketch<'s>>,
         alternatives: &mut Alternatives,
     ) -> Result<(), InferError> {
         alternatives.clear();
+        let MarkedSketch { sketch, marks } = sketch.into();
+        self.take_marks(marks)?;
         let output = encoder2d_output(&mut self.encoder2d, &mut self.input, &self.figure, sketch)?;
         let hypotheses = Hypotheses::new(output, self.latent_len);
         match (&mut self.refiner, &self.joints) {
@@ -180,7 +189,11 @@ impl Inference {
                     scratch: &mut self.final_scratch,
                     rows,
                 };
-                for found in refiner.refine(&hypotheses, sketch.points(), &mut body) {
+                let drawn = Drawn {
+                    points: sketch.points(),
+                    marks: &self.marks,
+                };
+                for found in refiner.refine(&hypotheses, drawn, &mut body) {
                     alternatives.add(&found.latent, &found.joints, found.log_weight);
                 }
             }
@@ -203,6 +216,17 @@ impl Inference {
         Ok(())
     }
 
+    /// What the joints say; none at all: that all were drawn.
+    fn take_marks(&mut self, marks: &[JointMark]) -> Result<(), InferError> {
+        if marks.is_empty() {
+            self.marks.fill(JointMark::Drawn);
+            return Ok(());
+        }
+        require("the list of marks", marks.len(), self.marks.len())?;
+        self.marks.copy_from_slice(marks);
+        Ok(())
+    }
+
     /// The body that is as that of `latent`, but for a limb, whose depth is the other way round: it points away from the
     /// viewer where it pointed toward him. Its joints stay where they are drawn. Where the model does not know how its
     /// answers are off, the latent stays as it is.
@@ -212,9 +236,9 @@ impl Inference {
     ///
     /// # Errors
     /// [`InferError::Sketch`] when the sketch is of another figure, [`InferError::Length`], [`InferError::NotFinite`].
-    pub fn flip_limb(
+    pub fn flip_limb<'s>(
         &mut self,
-        sketch: &Sketch,
+        sketch: impl Into<MarkedSketch<'s>>,
         latent: &[f32],
         limb: &Limb,
         flipped: &mut [f32],
@@ -222,6 +246,7 @@ impl Inference {
         require("the flipped latent", flipped.len(), self.latent_len)?;
         coefficients(&mut self.head, self.latent_len, latent)?;
         let mut alternatives = Alternatives::default();
+        let sketch = sketch.into();
         self.infer(sketch, &mut alternatives)?;
         flipped.copy_from_slice(latent);
         let (Some(refiner), JointMap::Linear(rows)) = (&mut self.refiner, &self.joints) else {
@@ -235,7 +260,11 @@ impl Inference {
         };
         flip::write_joints(&mut body, latent, &mut self.found);
         let depth = self.found[limb.end()].z - self.found[limb.base].z;
-        let goals = flip::goals_of(&self.found, limb, sketch.points());
+        let drawn = Drawn {
+            points: sketch.sketch.points(),
+            marks: &self.marks,
+        };
+        let goals = flip::goals_of(&self.found, limb, drawn);
         // From a body whose limb is flipped already it is a short way.
         let others = alternatives.as_slice().iter();
         let others = others.filter(|other| other.toward_viewer_m(limb) * depth < 0.0);

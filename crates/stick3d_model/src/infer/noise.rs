@@ -4,6 +4,8 @@
 use glam::Vec2;
 use stick3d_figure::figure::Figure;
 
+use super::marks::JointMark;
+
 /// How badly a drawing is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Noise {
@@ -11,20 +13,23 @@ pub(super) struct Noise {
     pub(super) joint: f64,
     /// Standard deviation of the factor of a bone's length.
     pub(super) bone: f64,
+    /// What the logarithm of the fit counts for beside the network's. Proposals are not normally distributed, so taken at its
+    /// word the fit is too sure; the less so the more exact the drawing is.
+    pub(super) trust: f64,
 }
 
 /// The drawings that are told apart, from exact to crooked.
 pub(super) const LEVELS: [Noise; 6] = {
-    const fn noise(joint: f64, bone: f64) -> Noise {
-        Noise { joint, bone }
+    const fn noise(joint: f64, bone: f64, trust: f64) -> Noise {
+        Noise { joint, bone, trust }
     }
     [
-        noise(0.005, 0.01),
-        noise(0.005, 0.10),
-        noise(0.014, 0.03),
-        noise(0.014, 0.12),
-        noise(0.025, 0.05),
-        noise(0.025, 0.16),
+        noise(0.005, 0.01, 0.8),
+        noise(0.008, 0.10, 0.1),
+        noise(0.014, 0.03, 0.1),
+        noise(0.014, 0.12, 0.1),
+        noise(0.025, 0.05, 0.1),
+        noise(0.025, 0.16, 0.1),
     ]
 };
 
@@ -32,6 +37,8 @@ pub(super) const LEVELS: [Noise; 6] = {
 const PLACE: f64 = 1.0;
 /// Any size: standard deviation of the factor.
 const SIZE: f64 = 0.5;
+/// A joint that was not drawn: standard deviation, share of the figure's size, so large that nothing is learnt from it.
+const ANYWHERE: f64 = 1e3;
 
 /// A figure's bones as seen from its root.
 #[derive(Debug, Clone)]
@@ -47,24 +54,11 @@ pub(super) struct Skeleton {
 impl Skeleton {
     pub(super) fn new(figure: &Figure, size_m: f32) -> Self {
         let count = figure.joint_count();
+        let bones = figure.bones_outward();
         let mut before = vec![None; count];
-        let mut order = vec![figure.root];
-        let mut index = 0;
-        while let Some(&from) = order.get(index) {
-            index += 1;
-            for &[a, b] in &figure.bones {
-                for (near, far) in [(a, b), (b, a)] {
-                    if near == from && before[far].is_none() && far != figure.root {
-                        before[far] = Some(near);
-                        order.push(far);
-                    }
-                }
-            }
+        for &[near, far] in &bones {
+            before[far] = Some(near);
         }
-        let bones: Vec<[usize; 2]> = order
-            .iter()
-            .filter_map(|&far| Some([before[far]?, far]))
-            .collect();
         let is_beyond = |joint: usize, far: usize| {
             let chain = std::iter::successors(Some(joint), |joint| before[*joint]);
             chain.into_iter().any(|joint| joint == far)
@@ -84,14 +78,20 @@ impl Skeleton {
     /// `[joint, axis]`, square metres.
     ///
     /// `points` is the body's projection, metres; `strains` are per bone how much more than usual its length is to be
-    /// doubted (1: no more).
-    pub(super) fn write_bones(&self, points: &[Vec2], strains: &[f64], covariance: &mut [f64]) {
+    /// doubted (1: no more). Pinned joints stay where they are however long bones are drawn.
+    pub(super) fn write_bones(
+        &self,
+        points: &[Vec2],
+        strains: &[f64],
+        marks: &[JointMark],
+        covariance: &mut [f64],
+    ) {
         let size = 2 * points.len();
         covariance.fill(0.0);
         for ((&[near, far], beyond), strain) in self.bones.iter().zip(&self.beyond).zip(strains) {
             let along = points[far] - points[near];
             add_square(covariance, size, *strain, |joint, axis| {
-                if beyond[joint] {
+                if beyond[joint] && marks[joint] != JointMark::Pinned {
                     f64::from(along[axis])
                 } else {
                     0.0
@@ -116,8 +116,13 @@ impl Skeleton {
     }
 
     /// The variance of a joint's coordinate, square metres.
-    pub(super) fn joint_variance(&self, noise: Noise) -> f64 {
-        (noise.joint * self.size_m).powi(2)
+    pub(super) fn joint_variance(&self, noise: Noise, mark: JointMark) -> f64 {
+        let share = match mark {
+            JointMark::Drawn => noise.joint,
+            JointMark::Guessed => ANYWHERE,
+            JointMark::Pinned => LEVELS[0].joint.min(noise.joint),
+        };
+        (share * self.size_m).powi(2)
     }
 
     /// How far beyond its usual error each bone's length is: what is expected of its square, over the variance, given the
@@ -175,19 +180,24 @@ fn add_square(
     }
 }
 
-/// Moves and scales drawn points so that they come nearest to others (least squares, closed form).
-pub(super) fn align(drawn: &[Vec2], to: &[Vec2], aligned: &mut [Vec2]) {
-    let count = drawn.len().max(1) as f32;
-    let (from_middle, to_middle) = (
-        drawn.iter().sum::<Vec2>() / count,
-        to.iter().sum::<Vec2>() / count,
-    );
+/// Moves and scales drawn points so that those that say something come nearest to others (least squares, closed form).
+pub(super) fn align(drawn: &[Vec2], marks: &[JointMark], to: &[Vec2], aligned: &mut [Vec2]) {
+    let weight = |mark: &JointMark| f32::from(u8::from(*mark != JointMark::Guessed));
+    let count = marks.iter().map(weight).sum::<f32>().max(1.0);
+    let middle = |points: &[Vec2]| {
+        let weighed = points.iter().zip(marks);
+        weighed
+            .map(|(point, mark)| weight(mark) * *point)
+            .sum::<Vec2>()
+            / count
+    };
+    let (from_middle, to_middle) = (middle(drawn), middle(to));
     let (mut along, mut square, mut to_square) = (0.0, 0.0, 0.0);
-    for (a, b) in drawn.iter().zip(to) {
+    for ((a, b), mark) in drawn.iter().zip(to).zip(marks) {
         let (a, b) = (*a - from_middle, *b - to_middle);
-        along += a.dot(b);
-        square += a.length_squared();
-        to_square += b.length_squared();
+        along += weight(mark) * a.dot(b);
+        square += weight(mark) * a.length_squared();
+        to_square += weight(mark) * b.length_squared();
     }
     let square = square.max(f32::MIN_POSITIVE);
     // A drawing that has nothing in common with the body is at least as large.
@@ -209,9 +219,26 @@ mod tests {
             .map(|p| 130.0 * *p + Vec2::new(40.0, -900.0))
             .collect();
         let mut aligned = vec![Vec2::ZERO; to.len()];
-        align(&drawn, &to, &mut aligned);
+        let marks = vec![JointMark::Drawn; to.len()];
+        align(&drawn, &marks, &to, &mut aligned);
         for (a, b) in aligned.iter().zip(&to) {
             assert!(a.distance(*b) < 1e-4);
+        }
+    }
+
+    #[test]
+    fn what_was_not_drawn_does_not_move_the_rest() {
+        let human = Figure::human();
+        let to = &human.template;
+        let hand = human.joint_index("hand_l").unwrap();
+        let mut drawn: Vec<Vec2> = to.iter().map(|p| 30.0 * *p).collect();
+        drawn[hand] += Vec2::new(40.0, 90.0);
+        let mut marks = vec![JointMark::Drawn; to.len()];
+        marks[hand] = JointMark::Guessed;
+        let mut aligned = vec![Vec2::ZERO; to.len()];
+        align(&drawn, &marks, to, &mut aligned);
+        for (joint, (a, b)) in aligned.iter().zip(to).enumerate() {
+            assert_eq!(a.distance(*b) < 1e-4, joint != hand);
         }
     }
 

@@ -13,6 +13,7 @@ use stick3d_figure::figure::Figure;
 use super::gaussian::Gaussian;
 use super::hypotheses::Hypotheses;
 use super::joint_map::JointRows;
+use super::marks::JointMark;
 use super::noise::{self, LEVELS, Noise, Skeleton};
 use super::perceptron::Perceptron;
 use super::slope::Slopes;
@@ -23,16 +24,19 @@ use crate::weights::MlpWeights;
 /// How often bodies are pulled and looked at again.
 const STEPS: usize = 3;
 
-/// What the logarithm of the fit counts for. Proposals are not normally distributed, and taken at its word the fit is too
-/// sure: of 1, 0.3 and 0.1 the second ranks best.
-const TRUST_IN_FIT: f64 = 0.3;
-
 /// The parts of a model that a body's joints come from.
 pub(super) struct Body<'a> {
     pub(super) head: &'a mut Perceptron,
     pub(super) layer: &'a FinalLayer,
     pub(super) scratch: &'a mut FinalScratch,
     pub(super) rows: &'a JointRows,
+}
+
+/// What was drawn: one of each per joint.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Drawn<'a> {
+    pub(super) points: &'a [Vec2],
+    pub(super) marks: &'a [JointMark],
 }
 
 /// A body on its way to the drawing.
@@ -97,14 +101,14 @@ impl Proposal {
     }
 
     /// Its joints, and the drawing aligned with them.
-    fn look(&mut self, body: &mut Body<'_>, drawn: &[Vec2]) {
+    fn look(&mut self, body: &mut Body<'_>, drawn: Drawn<'_>) {
         let code = body.head.run(&self.latent);
         let features = body.layer.features(code, body.scratch);
         body.rows.write(features, &mut self.joints);
         for (flat, joint) in self.flat.iter_mut().zip(&self.joints) {
             *flat = joint.truncate();
         }
-        noise::align(drawn, &self.flat, &mut self.aligned);
+        noise::align(drawn.points, drawn.marks, &self.flat, &mut self.aligned);
     }
 
     /// How its joints move with the latent. Right after [`Proposal::look`].
@@ -130,10 +134,10 @@ impl Proposal {
     }
 
     /// What the drawing's covariance is made of, as seen from here.
-    fn gather(&mut self, skeleton: &Skeleton) {
+    fn gather(&mut self, skeleton: &Skeleton, marks: &[JointMark]) {
         self.placed.copy_from_slice(&self.spread);
         skeleton.add_place(&self.flat, &mut self.placed);
-        skeleton.write_bones(&self.flat, &self.strains, &mut self.bones);
+        skeleton.write_bones(&self.flat, &self.strains, marks, &mut self.bones);
     }
 
     /// The drawing minus what is expected of it at [`Proposal::start`], as seen from here.
@@ -176,7 +180,7 @@ impl Refiner {
     pub(super) fn refine(
         &mut self,
         hypotheses: &Hypotheses<'_>,
-        drawn: &[Vec2],
+        drawn: Drawn<'_>,
         body: &mut Body<'_>,
     ) -> &mut [Proposal] {
         let several = hypotheses.len().min(self.proposals.len() - 1);
@@ -192,30 +196,30 @@ impl Refiner {
             proposal.strains.fill(1.0);
             proposal.look(body, drawn);
             proposal.differentiate(body, &mut self.slopes);
-            proposal.gather(&self.skeleton);
+            proposal.gather(&self.skeleton, drawn.marks);
         }
-        let noise = self.noise(hypotheses);
+        let noise = self.noise(hypotheses, drawn.marks);
         for index in 0..self.count {
             // The slopes hardly change on so short a way, and cost most.
             for _ in 0..STEPS {
-                self.pull(index, noise);
+                self.pull(index, noise, drawn.marks);
                 self.proposals[index].look(body, drawn);
             }
             let proposal = &mut self.proposals[index];
             proposal.log_weight =
-                TRUST_IN_FIT * proposal.log_weight + f64::from(hypotheses.log_probability(index));
+                noise.trust * proposal.log_weight + f64::from(hypotheses.log_probability(index));
         }
         &mut self.proposals[..self.count]
     }
 
     /// How badly the drawing is drawn: what makes it likeliest.
-    fn noise(&mut self, hypotheses: &Hypotheses<'_>) -> Noise {
+    fn noise(&mut self, hypotheses: &Hypotheses<'_>, marks: &[JointMark]) -> Noise {
         let mut best = (f64::NEG_INFINITY, LEVELS[0]);
         for level in LEVELS {
             let mut highest = f64::NEG_INFINITY;
             let mut sum = 0.0;
             for index in 0..self.count {
-                self.expect(index, level);
+                self.expect(index, level, marks);
                 let density = self.gaussian.log_density(&self.difference);
                 let weight = density + f64::from(hypotheses.log_probability(index));
                 // The logarithm of a sum of exponentials, without overflow.
@@ -235,7 +239,7 @@ impl Refiner {
     }
 
     /// What the drawing of a proposal is expected to be off, and what it is off.
-    fn expect(&mut self, index: usize, noise: Noise) {
+    fn expect(&mut self, index: usize, noise: Noise, marks: &[JointMark]) {
         let proposal = &self.proposals[index];
         let variance = noise.bone * noise.bone;
         let entries = proposal.placed.iter().zip(&proposal.bones);
@@ -243,26 +247,25 @@ impl Refiner {
         for (out, (placed, bones)) in covariance.iter_mut().zip(entries) {
             *out = placed + variance * bones;
         }
-        let joint = self.skeleton.joint_variance(noise);
         let size = self.difference.len();
-        covariance
-            .iter_mut()
-            .step_by(size + 1)
-            .for_each(|entry| *entry += joint);
+        let diagonal = covariance.iter_mut().step_by(size + 1);
+        for (axis, entry) in diagonal.enumerate() {
+            *entry += self.skeleton.joint_variance(noise, marks[axis / 2]);
+        }
         self.gaussian.factorise();
         proposal.write_difference(self.slopes.rank(), &mut self.difference);
     }
 
     /// Moves a proposal to where it is likeliest, as seen from where it is.
-    fn pull(&mut self, index: usize, noise: Noise) {
-        self.proposals[index].gather(&self.skeleton);
-        self.expect(index, noise);
+    fn pull(&mut self, index: usize, noise: Noise, marks: &[JointMark]) {
+        self.proposals[index].gather(&self.skeleton, marks);
+        self.expect(index, noise, marks);
         let solved = self.gaussian.solve(&self.difference);
         let proposal = &mut self.proposals[index];
         self.skeleton
             .update_strains(noise, &proposal.flat, solved, &mut proposal.strains);
-        proposal.gather(&self.skeleton);
-        self.expect(index, noise);
+        proposal.gather(&self.skeleton, marks);
+        self.expect(index, noise, marks);
         let proposal = &mut self.proposals[index];
         proposal.log_weight = self.gaussian.log_density(&self.difference);
         let solved = self.gaussian.solve(&self.difference);

@@ -3,6 +3,7 @@
 use glam::Vec2;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
+use stick3d_figure::complete_from_template;
 use stick3d_figure::figure::Figure;
 
 use super::normal_pair;
@@ -16,6 +17,9 @@ pub struct Augmentation {
     pub jitter_m: f32,
     /// The most that their bones are scaled: the range is drawn between 0 and this.
     pub bone_scale: f32,
+    /// Share of the sketches, clean or not, of which a limb is not drawn, but filled in from the template.
+    #[serde(default)]
+    pub missing_share: f32,
 }
 
 /// One kind of disturbance of a sketch.
@@ -50,6 +54,14 @@ impl SketchNoise {
 }
 
 impl Augmentation {
+    /// Disturbs the joints of a sketch (metres, one point per joint).
+    pub fn apply(&self, figure: &Figure, joints: &mut Vec<Vec2>, rng: &mut impl Rng) {
+        self.sample(rng).apply(figure, joints, rng);
+        if self.missing_share > 0.0 && rng.random::<f32>() < self.missing_share {
+            leave_out_a_limb(figure, joints, rng);
+        }
+    }
+
     /// Draws the disturbance of one sketch.
     pub fn sample(&self, rng: &mut impl Rng) -> SketchNoise {
         if rng.random::<f32>() < self.clean_share {
@@ -62,22 +74,25 @@ impl Augmentation {
     }
 }
 
+/// Puts the joints of a random limb where they are while a person draws the others.
+fn leave_out_a_limb(figure: &Figure, joints: &mut Vec<Vec2>, rng: &mut impl Rng) {
+    let limbs = figure.limbs();
+    if limbs.is_empty() {
+        return;
+    }
+    let limb = &limbs[rng.random_range(0..limbs.len())];
+    let mut placed: Vec<Option<Vec2>> = joints.iter().copied().map(Some).collect();
+    limb.joints.iter().for_each(|joint| placed[*joint] = None);
+    if let Some(sketch) = complete_from_template(figure, &placed) {
+        *joints = sketch.points().to_vec();
+    }
+}
+
 /// Scales every bone by its own factor, from the root outward, so that what hangs on a bone moves with it.
 fn scale_bones(figure: &Figure, joints: &mut [Vec2], mut factor: impl FnMut() -> f32) {
     let before = joints.to_vec();
-    let mut placed = vec![false; joints.len()];
-    placed[figure.root] = true;
-    // The bones are a tree over all joints, so every round places at least one joint more.
-    for _ in 0..figure.bones.len() {
-        for &[a, b] in &figure.bones {
-            let (from, to) = match (placed[a], placed[b]) {
-                (true, false) => (a, b),
-                (false, true) => (b, a),
-                _ => continue,
-            };
-            joints[to] = joints[from] + factor() * (before[to] - before[from]);
-            placed[to] = true;
-        }
+    for [from, to] in figure.bones_outward() {
+        joints[to] = joints[from] + factor() * (before[to] - before[from]);
     }
 }
 
@@ -126,6 +141,38 @@ mod tests {
             }
         }
         assert!(seen.0 < 0.87 && seen.1 > 1.13, "{seen:?}");
+    }
+
+    #[test]
+    fn a_limb_is_missing_as_often_as_is_said() {
+        let figure = Figure::human();
+        let augmentation = Augmentation {
+            clean_share: 1.0,
+            jitter_m: 0.0,
+            bone_scale: 0.0,
+            missing_share: 0.3,
+        };
+        let raised: Vec<Vec2> = figure
+            .template
+            .iter()
+            .map(|p| *p * Vec2::new(2.0, 1.0))
+            .collect();
+        let mut rng = random(4, "test", 0);
+        let (mut missing, rounds) = (0, 1000);
+        for _ in 0..rounds {
+            let mut joints = raised.clone();
+            augmentation.apply(figure, &mut joints, &mut rng);
+            let moved: Vec<usize> = (0..joints.len())
+                .filter(|i| joints[*i] != raised[*i])
+                .collect();
+            let is_of_a_limb = figure
+                .limbs()
+                .iter()
+                .any(|limb| moved.iter().all(|joint| limb.joints.contains(joint)));
+            assert!(is_of_a_limb, "{moved:?}");
+            missing += usize::from(!moved.is_empty());
+        }
+        assert!((250..350).contains(&missing), "{missing}");
     }
 
     #[test]

@@ -77,8 +77,7 @@ impl Batcher<'_> {
             turn_coefficients(turn, self.bodies.code_of(body), code);
             let joints = self.bodies.joints_of(body);
             let mut drawn = drawn(turn, joints);
-            let noise = self.augmentation.sample(&mut rng);
-            noise.apply(self.figure, &mut drawn, &mut rng);
+            self.augmentation.apply(self.figure, &mut drawn, &mut rng);
             let input = &mut batch.inputs[slot * input_len..][..input_len];
             Sketch::new(self.figure, drawn)?.write_input_vector(self.figure, input)?;
         }

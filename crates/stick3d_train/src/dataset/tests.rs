@@ -160,6 +160,7 @@ fn batches_are_turned_bodies_with_their_sketches() {
         clean_share: 1.0,
         jitter_m: 0.1,
         bone_scale: 0.2,
+        missing_share: 0.0,
     };
     let batcher = Batcher {
         figure,

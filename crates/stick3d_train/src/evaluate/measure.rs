@@ -12,7 +12,7 @@ use stick3d_model::{Alternatives, Inference, Model};
 use super::recognition::readable_flat_pose;
 use super::report::{Latency, PartReport, Report, Row, TestSet};
 use super::spread::Spread;
-use super::ways::{CROOKED, WAYS, Way};
+use super::ways::{CROOKED, Drawing, WAYS, Way};
 use super::{Baseline, Collector, EvalConfig, EvalError, Recognition};
 use crate::dataset::{Rotations, drawn, random, rounded};
 use crate::training::Progress;
@@ -227,11 +227,12 @@ impl<'a> Bench<'a> {
     fn case(&mut self, part: &str, case: usize, body: &Body) -> Result<(), EvalError> {
         let (figure, config) = (self.setup.model.figure(), self.setup.config);
         let mut rng = random(config.seed, part, case as u64);
-        let (truth, sketches) = drawn_in_all_ways(figure, &self.setup.ways, body, case, &mut rng)?;
-        for (way, sketch) in sketches.iter().enumerate() {
-            self.compare(way, sketch, &truth)?;
+        let (truth, drawings) = drawn_in_all_ways(figure, &self.setup.ways, body, case, &mut rng)?;
+        for (way, drawing) in drawings.iter().enumerate() {
+            self.compare(way, drawing, &truth)?;
         }
-        self.found.clean.extend(sketches.into_iter().next());
+        let clean = drawings.into_iter().next();
+        self.found.clean.extend(clean.map(|drawing| drawing.sketch));
         let flat: Vec<Vec2> = drawn(Quat::IDENTITY, &truth.1);
         let times = config.drawings_per_case;
         self.found.any_order.add(figure, &flat, times, &mut rng);
@@ -239,9 +240,11 @@ impl<'a> Bench<'a> {
     }
 
     /// Compares all answers to a sketch with the truth.
-    fn compare(&mut self, way: usize, sketch: &Sketch, truth: &Body) -> Result<(), EvalError> {
+    fn compare(&mut self, way: usize, drawing: &Drawing, truth: &Body) -> Result<(), EvalError> {
         let figure = self.setup.model.figure();
-        self.inference.infer(sketch, &mut self.alternatives)?;
+        let sketch = &drawing.sketch;
+        self.inference
+            .infer(drawing.marked(), &mut self.alternatives)?;
         let mut answers: Vec<Vec<Vec3>> = vec![];
         for alternative in self.alternatives.as_slice() {
             self.inference
@@ -293,7 +296,7 @@ fn drawn_in_all_ways(
     (mesh, joints): &Body,
     case: usize,
     rng: &mut ChaCha8Rng,
-) -> Result<(Body, Vec<Sketch>), EvalError> {
+) -> Result<(Body, Vec<Drawing>), EvalError> {
     let turn = Rotations::test_of(&figure.views).sample(rng);
     let turned = |points: &[Vec3]| points.iter().map(|point| turn * *point).collect();
     let truth: Body = (turned(mesh), turned(joints));
@@ -322,11 +325,11 @@ pub(super) fn sketches<C>(
     for part in parts {
         for (number, case) in part.cases.iter().take(each).enumerate() {
             let mut rng = random(config.seed, part.name, number as u64);
-            let (_, sketches) = drawn_in_all_ways(figure, &ways, &body(case), number, &mut rng)?;
+            let (_, drawings) = drawn_in_all_ways(figure, &ways, &body(case), number, &mut rng)?;
             let way = if number % 3 == 2 { CROOKED } else { 0 };
-            if let Some(sketch) = sketches.into_iter().nth(way) {
+            if let Some(drawing) = drawings.into_iter().nth(way) {
                 let label = format!("{} {}, {}", part.name, number + 1, ways[way].name);
-                list.push((label, sketch));
+                list.push((label, drawing.sketch));
             }
         }
     }

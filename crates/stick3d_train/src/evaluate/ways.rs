@@ -5,6 +5,7 @@ use rand::Rng;
 use stick3d_figure::complete_from_template;
 use stick3d_figure::figure::Figure;
 use stick3d_figure::sketch::{Sketch, SketchError};
+use stick3d_model::{JointMark, MarkedSketch};
 
 use crate::dataset::SketchNoise;
 use crate::size::relative_size;
@@ -24,6 +25,23 @@ pub(super) struct Way {
     pub(super) incomplete: bool,
     /// Whether the nearest neighbour stands beside it.
     pub(super) beside_baseline: bool,
+}
+
+/// A test case as it was drawn.
+#[derive(Debug, Clone)]
+pub(super) struct Drawing {
+    pub(super) sketch: Sketch,
+    /// What each joint says; none where all were drawn.
+    pub(super) marks: Vec<JointMark>,
+}
+
+impl Drawing {
+    pub(super) fn marked(&self) -> MarkedSketch<'_> {
+        MarkedSketch {
+            sketch: &self.sketch,
+            marks: &self.marks,
+        }
+    }
 }
 
 /// Ways to draw one figure,
@@ -72,7 +90,7 @@ impl Way {
         mut joints: Vec<Vec2>,
         case: usize,
         rng: &mut impl Rng,
-    ) -> Result<Sketch, SketchError> {
+    ) -> Result<Drawing, SketchError> {
         self.noise.apply(figure, &mut joints, rng);
         let limbs = figure.limbs();
         let left_out = limbs.get(case % limbs.len().max(1));
@@ -81,10 +99,19 @@ impl Way {
             limb.joints.iter().for_each(|joint| placed[*joint] = None);
             // A figure that is a single limb has nothing left to fill it in from, and is drawn whole.
             if let Some(sketch) = complete_from_template(figure, &placed) {
-                return Ok(sketch);
+                let marks = placed.iter().map(|place| match place {
+                    Some(_) => JointMark::Drawn,
+                    None => JointMark::Guessed,
+                });
+                let marks = marks.collect();
+                return Ok(Drawing { sketch, marks });
             }
         }
-        Sketch::new(figure, joints)
+        let sketch = Sketch::new(figure, joints)?;
+        Ok(Drawing {
+            sketch,
+            marks: vec![],
+        })
     }
 }
 
@@ -103,10 +130,11 @@ mod tests {
                 .collect();
             for (case, limb) in limbs.iter().enumerate() {
                 let rng = &mut random(1, "test", 0);
-                let sketch = way.draw(figure, bent.clone(), case, rng).unwrap();
-                for (joint, point) in sketch.points().iter().enumerate() {
+                let drawing = way.draw(figure, bent.clone(), case, rng).unwrap();
+                for (joint, point) in drawing.sketch.points().iter().enumerate() {
                     let drawn = !limb.joints.contains(&joint);
                     assert_eq!(*point == bent[joint], drawn, "{} {joint}", figure.name);
+                    assert_eq!(drawing.marks[joint] == JointMark::Drawn, drawn);
                 }
             }
         }

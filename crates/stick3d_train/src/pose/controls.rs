@@ -254,6 +254,13 @@ impl Controls {
         &self.clips
     }
 
+    /// The control that bows the body as a whole, if there is one.
+    pub fn body_pitch(&self) -> Option<usize> {
+        self.list
+            .iter()
+            .position(|control| control.name == "body.pitch")
+    }
+
     /// The limb that control `index` belongs to, of [`Controls::limb_count`]; none: the trunk and what
     /// stays with it.
     pub fn limb_of(&self, index: usize) -> Option<usize> {

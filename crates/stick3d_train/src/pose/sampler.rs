@@ -9,6 +9,15 @@ use crate::rig::{Pose, Rig};
 
 /// Attempts at one pose before falling back to a known good one.
 const ATTEMPTS: usize = 40;
+/// Share of the natural poses whose right side is made the like of the left.
+const EVEN_SHARE: f64 = 0.2;
+/// Share of the natural poses that are tipped as a whole, and how far: standard deviation, degrees. Bodies that fall, dive,
+/// fly, bow or roll are drawn as often as they are rare.
+const TIPPED_SHARE: f64 = 0.2;
+const TIPPED_DEG: f32 = 30.0;
+/// Share of the natural poses that stand at any angle, upside down as well.
+const TUMBLED_SHARE: f64 = 0.05;
+
 /// Which poses a [`PoseSampler`] draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SampleKind {
@@ -143,7 +152,23 @@ impl<'a> PoseSampler<'a> {
             .zip(&picks)
             .map(|(w, pick)| w * self.poses[*pick].lift_m)
             .sum();
+        if self.random.random_bool(EVEN_SHARE) {
+            self.even_out(&mut values);
+        }
+        self.tip(&mut values);
         values
+    }
+
+    /// Bows some bodies as a whole, forward or backward.
+    fn tip(&mut self, values: &mut PoseValues) {
+        let Some(pitch) = self.controls.body_pitch() else {
+            return;
+        };
+        if self.random.random_bool(TUMBLED_SHARE) {
+            values.degrees[pitch] = self.random.random_range(-180.0..180.0);
+        } else if self.random.random_bool(TIPPED_SHARE) {
+            values.degrees[pitch] += TIPPED_DEG * gaussian(&mut self.random);
+        }
     }
 
     /// Weights that sum to 1, one of them mostly in the lead: poses averaged evenly all look alike.

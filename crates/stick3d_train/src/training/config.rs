@@ -123,19 +123,20 @@ impl TrainConfig {
                 clean_share: 0.5,
                 jitter_m: 0.04 * size,
                 bone_scale: 0.2,
+                missing_share: 0.1,
             },
-            batch_size: 256,
+            batch_size: 128,
             stages: [
-                StageConfig {
-                    epochs: 3,
-                    learning_rate: 1e-3,
-                },
                 StageConfig {
                     epochs: 4,
                     learning_rate: 1e-3,
                 },
                 StageConfig {
-                    epochs: 8,
+                    epochs: 6,
+                    learning_rate: 1e-3,
+                },
+                StageConfig {
+                    epochs: 20,
                     learning_rate: 1e-3,
                 },
             ],

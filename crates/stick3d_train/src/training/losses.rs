@@ -1,10 +1,11 @@
 //! What is minimised in the autoencoder, and what all losses are made of.
 
-use burn::tensor::{Device, Tensor, TensorData};
+use burn::tensor::{Device, Gradients, Tensor, TensorData};
 use stick3d_figure::figure::Figure;
-use stick3d_model::network::{reparameterize, rotation_features};
+use stick3d_model::network::reparameterize;
 
 use super::networks::Autoencoder;
+use super::tape::{Expansion, Tape};
 use super::{LossWeights, TrainError};
 use crate::dataset::{Batch, Shape};
 
@@ -27,8 +28,7 @@ pub(crate) struct Losses {
     extent_m: f64,
     mean: Tensor<2>,
     scale: f64,
-    /// How many bones the codes turn, and the pairs that share a half-way rotation; `None` where codes are features.
-    turning: Option<(usize, Vec<usize>)>,
+    expansion: Expansion,
     /// `[features, probes + joints + bones]`: some vertices, the joints, and the differences between the ends of the
     /// figure's bones.
     points: Tensor<2>,
@@ -59,6 +59,29 @@ pub(crate) struct Points {
 /// Terms of one loss, for the log: name and value, unweighted.
 pub(crate) type Terms = Vec<(&'static str, Tensor<1>)>;
 
+/// A loss in the two parts that are differentiated one after the other, see [`Tape`].
+pub(crate) struct Loss {
+    /// What depends on the features alone.
+    pub(super) of_points: Tensor<1>,
+    /// What depends on the networks' outputs.
+    pub(super) of_codes: Tensor<1>,
+}
+
+impl Loss {
+    /// The whole of it, not to be differentiated.
+    pub(super) fn value(&self) -> Tensor<1> {
+        self.of_points.clone().detach() + self.of_codes.clone().detach()
+    }
+
+    /// This one and `weight` times another.
+    pub(super) fn plus(self, other: Self, weight: f64) -> Self {
+        Self {
+            of_points: self.of_points + other.of_points * weight,
+            of_codes: self.of_codes + other.of_codes * weight,
+        }
+    }
+}
+
 impl Losses {
     pub(crate) fn new(
         figure: &Figure,
@@ -84,81 +107,89 @@ impl Losses {
         }
         let size = [rows.len() / columns, columns];
         let mean = TensorData::new(scale.mean.clone(), [1, scale.mean.len()]);
-        let turning = shape.rotations().map(|rotations| {
-            let halves = rotations.halves.as_flattened();
-            let halves = halves.iter().map(|bone| usize::from(*bone)).collect();
-            (rotations.bone_count, halves)
-        });
         Self {
             weights,
             extent_m: f64::from(extent_m),
             mean: Tensor::from_data(mean, device),
             scale: f64::from(scale.scale),
-            turning,
+            expansion: Expansion::new(shape.rotations()),
             points: Tensor::<2>::from_data(TensorData::new(rows, size), device).transpose(),
             probes,
             joints: figure.joint_count(),
         }
     }
 
-    /// Where normalised codes put the points.
-    pub(crate) fn points(&self, codes: Tensor<2>) -> Points {
+    /// Where normalised codes put the points. With a tape they can be differentiated.
+    pub(crate) fn points(
+        &self,
+        codes: Tensor<2>,
+        tape: Option<&mut Tape>,
+    ) -> Result<Points, TrainError> {
         let [batch, _] = codes.dims();
         let [_, count] = self.points.dims();
-        let features = self.features(codes);
+        let features = self.features(codes, tape)?;
         let all = features
             .matmul(self.points.clone())
             .reshape([batch, 3, count]);
         let bones = count - self.probes - self.joints;
-        Points {
+        Ok(Points {
             probes: all.clone().narrow(2, 0, self.probes),
             joints: all.clone().narrow(2, self.probes, self.joints),
             bones: all.narrow(2, self.probes + self.joints, bones),
-        }
+        })
     }
 
-    /// Where normalised codes put the joints, `[batch, 3, joints]`, metres.
-    pub(crate) fn joints(&self, codes: Tensor<2>) -> Tensor<3> {
+    /// Where normalised codes put the joints, `[batch, 3, joints]`, metres. Not to be differentiated.
+    pub(crate) fn joints(&self, codes: Tensor<2>) -> Result<Tensor<3>, TrainError> {
         let [batch, _] = codes.dims();
         let rows = self.points.clone().narrow(1, self.probes, self.joints);
-        self.features(codes)
-            .matmul(rows)
-            .reshape([batch, 3, self.joints])
+        let all = self.features(codes, None)?.matmul(rows);
+        Ok(all.reshape([batch, 3, self.joints]))
     }
 
     /// What points are linear in, `[batch · 3, features]`.
-    fn features(&self, codes: Tensor<2>) -> Tensor<2> {
-        let [batch, len] = codes.dims();
+    fn features(&self, codes: Tensor<2>, tape: Option<&mut Tape>) -> Result<Tensor<2>, TrainError> {
         let raw = codes * self.scale + self.mean.clone();
-        match &self.turning {
-            Some((bones, halves)) => rotation_features(raw, *bones, halves),
-            None => raw.reshape([3 * batch, len / 3]),
-        }
+        self.expansion.features(raw, tape)
+    }
+
+    /// The derivative of a loss by all networks.
+    pub(crate) fn backward(&self, loss: Loss, tape: Tape) -> Result<Gradients, TrainError> {
+        let device = loss.of_codes.device();
+        let of_features = loss.of_points.backward();
+        let carried = self.expansion.carry_on(tape, &of_features, &device)?;
+        Ok((loss.of_codes + carried).backward())
     }
 
     /// The paper's loss of the autoencoder: `alpha · (mean squared error of the coordinates) + divergence`.
-    pub(crate) fn autoencoder(&self, vae: &Autoencoder, batch: &Tensors) -> (Tensor<1>, Terms) {
+    pub(crate) fn autoencoder(
+        &self,
+        vae: &Autoencoder,
+        batch: &Tensors,
+        tape: &mut Tape,
+    ) -> Result<(Loss, Terms), TrainError> {
         let (mean, log_variance) = vae.encoder3d.forward(batch.codes.clone());
         let log_variance = log_variance.clamp(-12.0, 8.0);
         let latent = reparameterize(mean.clone(), log_variance.clone(), batch.noise.clone());
         let codes = vae.head.forward(latent);
         let of_codes = (codes.clone() - batch.codes.clone()).square().mean();
-        let error = self.points(codes).probes - batch.truth.probes.clone();
+        let error = self.points(codes, Some(tape))?.probes - batch.truth.probes.clone();
         let squared = error.square().mean() / (self.extent_m * self.extent_m);
         let divergence = (mean.square() + log_variance.clone().exp() - log_variance - 1.0)
             .sum_dim(1)
             .mean()
             * 0.5;
-        let loss = (squared.clone() + of_codes.clone() * self.weights.code) * self.weights.alpha
-            + divergence.clone();
-        (
-            loss,
-            vec![
-                ("mse", squared.detach()),
-                ("code", of_codes.detach()),
-                ("kl", divergence.detach()),
-            ],
-        )
+        let LossWeights { alpha, code, .. } = self.weights;
+        let loss = Loss {
+            of_points: squared.clone() * alpha,
+            of_codes: of_codes.clone() * (code * alpha) + divergence.clone(),
+        };
+        let terms = vec![
+            ("mse", squared.detach()),
+            ("code", of_codes.detach()),
+            ("kl", divergence.detach()),
+        ];
+        Ok((loss, terms))
     }
 
     /// The weight of the autoencoder's loss beside the sketch's.
@@ -173,7 +204,7 @@ impl Losses {
         noise: Vec<f32>,
         scale: &CodeScale,
         device: &Device,
-    ) -> Tensors {
+    ) -> Result<Tensors, TrainError> {
         let width = scale.mean.len();
         let recip = scale.scale.recip();
         let codes: Vec<f32> = batch
@@ -190,12 +221,12 @@ impl Losses {
             Tensor::<2>::from_data(TensorData::new(numbers, shape), device)
         };
         let codes = tensor(codes);
-        Tensors {
-            truth: self.points(codes.clone()),
+        Ok(Tensors {
+            truth: self.points(codes.clone(), None)?,
             codes,
             inputs: tensor(batch.inputs.clone()),
             noise: tensor(noise),
-        }
+        })
     }
 }
 

@@ -24,6 +24,7 @@ mod progress;
 mod run;
 mod sketch_loss;
 pub(crate) mod statistics;
+mod tape;
 
 pub use config::{HiddenLayers, LossWeights, StageConfig, TrainConfig};
 pub use error::TrainError;

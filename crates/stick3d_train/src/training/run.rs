@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use burn::optim::GradientsParams;
-use burn::tensor::{Device, Tensor};
+use burn::tensor::Device;
 use rand::Rng as _;
 use stick3d_model::Model;
 use stick3d_model::digest::sha256_hex;
@@ -13,10 +13,11 @@ use super::checkpoint::Checkpoint;
 use super::export;
 use super::init::initial_weights;
 use super::log::{LossLog, LossRecord};
-use super::losses::{CodeScale, Losses, Tensors, Terms, values};
+use super::losses::{CodeScale, Loss, Losses, Tensors, Terms, values};
 use super::material::{Material, MeshTrainInput, TrainInput};
 use super::networks::{NetworkWeights, Networks};
 use super::sketch_loss::Relaxation;
+use super::tape::Tape;
 use super::{Progress, StageConfig, StageName, TrainConfig, TrainError, plot};
 use crate::dataset::{BasisFit, Batcher, BodySet, random, rounded};
 
@@ -219,7 +220,7 @@ impl<'a> Run<'a> {
             let noise = batcher.noise(epoch, index, batch.len * self.config.latent_len);
             let tensors = self
                 .losses
-                .tensors(&batch, noise, &self.scale, &self.device);
+                .tensors(&batch, noise, &self.scale, &self.device)?;
             let step = state.epoch * count + index;
             let rate = stage.learning_rate * schedule(step, stage.epochs * count);
             let done = step as f64 / (stage.epochs * count) as f64;
@@ -280,11 +281,13 @@ impl<'a> Run<'a> {
     ) -> Result<(Networks, Terms), TrainError> {
         use burn::module::Module as _;
         let backend = TrainError::Backend;
+        let mut tape = Tape::default();
         let Networks { vae, encoder2d } = networks;
         match stage {
             StageName::Autoencoder => {
-                let (loss, terms) = self.losses.autoencoder(&vae, batch);
-                let (gradients, terms) = (loss.backward(), with_loss(loss, terms));
+                let (loss, terms) = self.losses.autoencoder(&vae, batch, &mut tape)?;
+                let terms = with_loss(&loss, terms);
+                let gradients = self.losses.backward(loss, tape)?;
                 let gradients = GradientsParams::from_grads(gradients, &vae);
                 let vae = adam.step(vae, gradients, rate).map_err(backend)?;
                 Ok((Networks { vae, encoder2d }, terms))
@@ -295,10 +298,11 @@ impl<'a> Run<'a> {
                     encoder2d,
                 };
                 let (mean, _) = frozen.vae.encoder3d.forward(batch.codes.clone());
-                let (loss, terms) = self
-                    .losses
-                    .sketch(&frozen, mean.detach(), batch, relaxation);
-                let (gradients, terms) = (loss.backward(), with_loss(loss, terms));
+                let mean = mean.detach();
+                let losses = &self.losses;
+                let (loss, terms) = losses.sketch(&frozen, mean, batch, relaxation, &mut tape)?;
+                let terms = with_loss(&loss, terms);
+                let gradients = self.losses.backward(loss, tape)?;
                 let encoder2d = frozen.encoder2d;
                 let gradients = GradientsParams::from_grads(gradients, &encoder2d);
                 let encoder2d = adam.step(encoder2d, gradients, rate).map_err(backend)?;
@@ -306,12 +310,16 @@ impl<'a> Run<'a> {
             }
             StageName::Joint => {
                 let networks = Networks { vae, encoder2d };
-                let (autoencoder, mut terms) = self.losses.autoencoder(&networks.vae, batch);
+                let losses = &self.losses;
+                let (autoencoder, mut terms) =
+                    losses.autoencoder(&networks.vae, batch, &mut tape)?;
                 let (mean, _) = networks.vae.encoder3d.forward(batch.codes.clone());
-                let (sketch, sketch_terms) = self.losses.sketch(&networks, mean, batch, relaxation);
+                let (sketch, sketch_terms) =
+                    losses.sketch(&networks, mean, batch, relaxation, &mut tape)?;
                 terms.extend(sketch_terms);
-                let loss = sketch + autoencoder * self.losses.autoencoder_weight();
-                let (gradients, terms) = (loss.backward(), with_loss(loss, terms));
+                let loss = sketch.plus(autoencoder, losses.autoencoder_weight());
+                let terms = with_loss(&loss, terms);
+                let gradients = losses.backward(loss, tape)?;
                 let gradients = GradientsParams::from_grads(gradients, &networks);
                 Ok((
                     adam.step(networks, gradients, rate).map_err(backend)?,
@@ -322,8 +330,8 @@ impl<'a> Run<'a> {
     }
 }
 
-fn with_loss(loss: Tensor<1>, mut terms: Terms) -> Terms {
-    terms.push(("loss", loss.detach()));
+fn with_loss(loss: &Loss, mut terms: Terms) -> Terms {
+    terms.push(("loss", loss.value()));
     terms
 }
 

@@ -9,9 +9,10 @@ use burn::tensor::activation::log_softmax;
 use burn::tensor::{Int, Tensor, TensorData};
 use stick3d_model::network::Mlp;
 
-use super::LossWeights;
-use super::losses::{Losses, Points, Tensors, Terms, length};
+use super::losses::{Loss, Losses, Points, Tensors, Terms, length};
 use super::networks::Networks;
+use super::tape::Tape;
+use super::{LossWeights, TrainError};
 
 /// How the hypotheses of one step are treated.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,13 +43,14 @@ impl Losses {
         target_mean: Tensor<2>,
         batch: &Tensors,
         relaxation: &Relaxation,
-    ) -> (Tensor<1>, Terms) {
+        tape: &mut Tape,
+    ) -> Result<(Loss, Terms), TrainError> {
         let output = networks.encoder2d.forward(batch.inputs.clone());
         let head = &networks.vae.head;
         let [_, latent_len] = target_mean.dims();
         let [_, width] = output.dims();
         if width == latent_len {
-            return self.nearest(head, output, target_mean, batch);
+            return self.nearest(head, output, target_mean, batch, tape);
         }
         let count = width / (latent_len + 1);
         let [len, _] = output.dims();
@@ -57,28 +59,32 @@ impl Losses {
             .narrow(1, 0, count * latent_len)
             .reshape([len, count, latent_len]);
         let scores = output.narrow(1, count * latent_len, count);
-        let winners = self.winners(head, latents.clone(), batch);
-        let (mut loss, mut terms) =
-            self.nearest(head, pick(&latents, winners.clone()), target_mean, batch);
+        let winners = self.winners(head, latents.clone(), batch)?;
+        let winner = pick(&latents, winners.clone());
+        let (loss, mut terms) = self.nearest(head, winner, target_mean, batch, tape)?;
 
         let others = relaxation.others.iter().map(|h| *h as i64).collect();
         let others = Tensor::<2, Int>::from_data(
             TensorData::new::<i64, _>(others, [len, 1]),
             &latents.device(),
         );
-        let found = self.points(head.forward(pick(&latents, others)));
+        let found = self.points(head.forward(pick(&latents, others)), Some(tape))?;
         let other = distances(found, &batch.truth);
         let weights = self.weights;
-        loss = loss
-            + (other.vertices * weights.vertices + other.joints * weights.joints)
-                * relaxation.share
-            + other.reprojection.clone() * weights.reprojection
-            + other.bones * weights.bones;
         let miss = -log_softmax(scores, 1).gather(1, winners).mean();
-        loss = loss + miss.clone() * weights.score;
-        terms.push(("others_reprojection_cm", other.reprojection.detach()));
-        terms.push(("score", miss.detach()));
-        (loss, terms)
+        terms.push((
+            "others_reprojection_cm",
+            other.reprojection.clone().detach(),
+        ));
+        terms.push(("score", miss.clone().detach()));
+        let of_others = Loss {
+            of_points: (other.vertices * weights.vertices + other.joints * weights.joints)
+                * relaxation.share
+                + other.reprojection * weights.reprojection
+                + other.bones * weights.bones,
+            of_codes: miss * weights.score,
+        };
+        Ok((loss.plus(of_others, 1.0), terms))
     }
 
     /// The loss of one latent for each sketch.
@@ -88,9 +94,11 @@ impl Losses {
         latent: Tensor<2>,
         target_mean: Tensor<2>,
         batch: &Tensors,
-    ) -> (Tensor<1>, Terms) {
+        tape: &mut Tape,
+    ) -> Result<(Loss, Terms), TrainError> {
         let equation_2 = (latent.clone() - target_mean).square().mean();
-        let found = distances(self.points(head.forward(latent)), &batch.truth);
+        let points = self.points(head.forward(latent), Some(tape))?;
+        let found = distances(points, &batch.truth);
         let LossWeights {
             latent,
             vertices,
@@ -99,11 +107,13 @@ impl Losses {
             bones,
             ..
         } = self.weights;
-        let loss = equation_2.clone() * latent
-            + found.vertices.clone() * vertices
-            + found.joints.clone() * joints
-            + found.reprojection.clone() * reprojection
-            + found.bones.clone() * bones;
+        let loss = Loss {
+            of_points: found.vertices.clone() * vertices
+                + found.joints.clone() * joints
+                + found.reprojection.clone() * reprojection
+                + found.bones.clone() * bones,
+            of_codes: equation_2.clone() * latent,
+        };
         let terms = vec![
             ("latent", equation_2.detach()),
             ("vertices_cm", found.vertices.detach()),
@@ -111,23 +121,28 @@ impl Losses {
             ("reprojection_cm", found.reprojection.detach()),
             ("bones_percent", found.bones.detach()),
         ];
-        (loss, terms)
+        Ok((loss, terms))
     }
 
     /// Which of the latents `[batch, hypotheses, latent_len]` have their joints nearest to the truth, `[batch, 1]`. Not
     /// differentiated.
-    fn winners(&self, head: &Mlp, latents: Tensor<3>, batch: &Tensors) -> Tensor<2, Int> {
+    fn winners(
+        &self,
+        head: &Mlp,
+        latents: Tensor<3>,
+        batch: &Tensors,
+    ) -> Result<Tensor<2, Int>, TrainError> {
         use burn::module::Module as _;
         let [len, count, latent_len] = latents.dims();
         let head = head.clone().no_grad();
         let codes = head.forward(latents.detach().reshape([len * count, latent_len]));
-        let found = self.joints(codes);
+        let found = self.joints(codes)?;
         let [_, _, joints] = found.dims();
         let truth = batch.truth.joints.clone().detach();
         let truth = truth.reshape([len, 1, 3 * joints]);
         let difference = found.reshape([len, count, 3 * joints]) - truth;
         let distances = length(difference.reshape([len * count, 3, joints])).mean_dim(2);
-        distances.reshape([len, count]).argmin(1)
+        Ok(distances.reshape([len, count]).argmin(1))
     }
 }
 

@@ -123,7 +123,7 @@ pub(super) fn show(
 ) -> Option<Action> {
     let tiles = tiles(alternatives);
     let room = grid.tile - vec2(2.0 * MARGIN + WORDS_WIDTH, 2.0 * MARGIN);
-    let scale = common_scale(tiles.iter().map(|tile| tile.body), room);
+    let scale = common_scale(figure, tiles.iter().map(|tile| tile.body), room);
     let mut asked = None;
     for (index, tile) in tiles.iter().enumerate() {
         let rect = grid.tile_at(index);

@@ -13,6 +13,8 @@ const YAW_RAD: f32 = 0.87;
 const PITCH_RAD: f32 = 0.26;
 /// How thick bones are, as a share of the figure's size.
 const BONE_SHARE: f32 = 0.046;
+/// The head's radius, in bones' thicknesses.
+const HEAD_SHARE: f32 = 0.95;
 /// What is a whole figure's size nearer is drawn so much thicker, and in so much more of its colour.
 const NEARER_IS_THICKER: f32 = 0.7;
 const NEARER_IS_DARKER: f32 = 1.1;
@@ -46,10 +48,27 @@ fn lowest_m(body: &Alternative) -> f32 {
         .fold(f32::INFINITY, f32::min)
 }
 
-/// Round the joints and their shadows as looked at, y down, metres.
-fn bounds(joints: &[Vec3], shadow: &[Vec3]) -> Rect {
-    let points = joints.iter().chain(shadow).map(|j| pos2(j.x, -j.y));
-    Rect::from_points(&points.collect::<Vec<_>>())
+/// How thick something is that is `depth_m` nearer than the root, metres.
+fn thick_m(size_m: f32, depth_m: f32) -> f32 {
+    let nearer = (1.0 + NEARER_IS_THICKER * depth_m / size_m).clamp(0.5, 1.6);
+    BONE_SHARE * size_m * nearer
+}
+
+/// Round everything that is painted of the joints and their shadows as looked at, y down, metres.
+fn bounds(figure: &Figure, joints: &[Vec3], shadow: &[Vec3]) -> Rect {
+    let size_m = figure.template_extent_m();
+    let head = figure.path.first().copied();
+    let dot = |at: Vec3, radius_m: f32| {
+        Rect::from_center_size(pos2(at.x, -at.y), egui::Vec2::splat(2.0 * radius_m))
+    };
+    let of_joints = joints.iter().enumerate().map(|(joint, at)| {
+        let share = if head == Some(joint) { HEAD_SHARE } else { 0.5 };
+        dot(*at, share * thick_m(size_m, at.z))
+    });
+    let of_shadow = shadow.iter().map(|at| dot(*at, 0.5 * BONE_SHARE * size_m));
+    of_joints
+        .chain(of_shadow)
+        .fold(Rect::NOTHING, |all, dot| all | dot)
 }
 
 fn seen(body: &Alternative) -> (Vec<Vec3>, Vec<Vec3>) {
@@ -62,12 +81,14 @@ fn seen(body: &Alternative) -> (Vec<Vec3>, Vec<Vec3>) {
 
 /// The scale at which each of the bodies has room, points per metre.
 pub(super) fn common_scale<'a>(
+    figure: &Figure,
     bodies: impl Iterator<Item = &'a Alternative>,
     room: egui::Vec2,
 ) -> f32 {
     let scale = bodies.map(|body| {
         let (joints, shadow) = seen(body);
-        let size = bounds(&joints, &shadow).size().max(vec2(1.0e-4, 1.0e-4));
+        let size = bounds(figure, &joints, &shadow).size();
+        let size = size.max(vec2(1.0e-4, 1.0e-4));
         (room.x / size.x).min(room.y / size.y)
     });
     scale.fold(f32::INFINITY, f32::min)
@@ -88,7 +109,7 @@ impl<'a> Picture<'a> {
 
     /// Paints it round a centre: shadow, then the bones from the farthest to the nearest.
     pub(super) fn paint(&self, painter: &Painter, centre: Pos2) {
-        let middle = bounds(&self.joints, &self.shadow).center();
+        let middle = bounds(self.figure, &self.joints, &self.shadow).center();
         let on_screen = |p: Vec3| centre + (pos2(p.x, -p.y) - middle) * self.scale;
         let width = BONE_SHARE * self.size_m * self.scale;
         let shade = theme::PAPER.lerp_to_gamma(theme::INK, 0.11);
@@ -103,17 +124,11 @@ impl<'a> Picture<'a> {
         let depth = |bone: &[usize; 2]| self.joints[bone[0]].z + self.joints[bone[1]].z;
         bones.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
         for bone in bones {
-            self.paint_bone(painter, bone, width, &on_screen);
+            self.paint_bone(painter, bone, &on_screen);
         }
     }
 
-    fn paint_bone(
-        &self,
-        painter: &Painter,
-        bone: [usize; 2],
-        width: f32,
-        on_screen: &impl Fn(Vec3) -> Pos2,
-    ) {
+    fn paint_bone(&self, painter: &Painter, bone: [usize; 2], on_screen: &impl Fn(Vec3) -> Pos2) {
         let [from, to] = bone.map(|joint| self.joints[joint]);
         let pieces = (0..PIECES).map(|piece| {
             let at = |step: usize| from.lerp(to, step as f32 / PIECES as f32);
@@ -129,7 +144,7 @@ impl<'a> Picture<'a> {
             };
             for ends in pieces.clone() {
                 let middle_m = (ends[0].z + ends[1].z) / 2.0;
-                let half = self.thick(width, middle_m) / 2.0 + grow;
+                let half = self.thick(middle_m) / 2.0 + grow;
                 let color = paper(middle_m);
                 let ends = ends.map(on_screen);
                 painter.line_segment(ends, Stroke::new(2.0 * half, color));
@@ -138,15 +153,15 @@ impl<'a> Picture<'a> {
                 }
             }
             if let Some(head) = head {
-                let radius = 0.95 * self.thick(width, head.z) + grow;
+                let radius = HEAD_SHARE * self.thick(head.z) + grow;
                 painter.circle_filled(on_screen(head), radius, paper(head.z));
             }
         }
     }
 
-    /// How thick something is that is `depth_m` nearer than the root.
-    fn thick(&self, width: f32, depth_m: f32) -> f32 {
-        width * (1.0 + NEARER_IS_THICKER * depth_m / self.size_m).clamp(0.5, 1.6)
+    /// How thick something is that is `depth_m` nearer than the root, points.
+    fn thick(&self, depth_m: f32) -> f32 {
+        self.scale * thick_m(self.size_m, depth_m)
     }
 
     fn inked(&self, color: Color32, depth_m: f32) -> Color32 {
@@ -177,17 +192,17 @@ mod tests {
         let [near, far] = [&toward, &away].map(|picture| picture.joints[hand]);
         assert!((near.x - far.x).abs() > 0.5, "seen from the side");
         assert!(near.z > far.z);
-        assert!(toward.thick(4.0, near.z) > away.thick(4.0, far.z));
+        assert!(toward.thick(near.z) > away.thick(far.z));
     }
 
     #[test]
     fn every_body_has_room_at_the_common_scale() {
         let bodies = [body(0.0), body(1.5)];
         let room = vec2(44.0, 40.0);
-        let scale = common_scale(bodies.iter(), room);
+        let scale = common_scale(Figure::human(), bodies.iter(), room);
         let sizes = bodies.each_ref().map(|body| {
             let (joints, shadow) = seen(body);
-            bounds(&joints, &shadow).size() * scale
+            bounds(Figure::human(), &joints, &shadow).size() * scale
         });
         assert!(
             sizes

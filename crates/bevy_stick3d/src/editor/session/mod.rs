@@ -299,6 +299,7 @@ pub(super) struct Opening {
     pub(super) sketch: Option<FirstSketch>,
     pub(super) clip: Option<FirstClip>,
     pub(super) yaw_rad: Option<f32>,
+    pub(super) order: DrawingOrder,
 }
 
 /// What pens did becomes part of the documents.
@@ -338,6 +339,7 @@ fn spawn_choices(
 ) {
     session.active = opening.first.min(opening.figures.len().saturating_sub(1));
     session.shows_ghosts = true;
+    session.order = opening.order;
     for (index, figure) in opening.figures.iter().enumerate() {
         let model = models.add(figure.model.clone());
         let edited = EditedFigure::new(
@@ -356,6 +358,7 @@ fn spawn_choices(
             let mut canvas =
                 SketchCanvas::new(CanvasArea::rect(Rect::default()), body).with_preview();
             canvas.enabled = false;
+            canvas.order = opening.order;
             let drawing = SketchDrawing::new(figure.model.figure().clone());
             Slot {
                 canvas: commands.spawn((canvas, drawing)).id(),

@@ -36,6 +36,7 @@ fn app(sketch: Option<FirstSketch>) -> App {
             sketch,
             clip: None,
             yaw_rad: None,
+            order: DrawingOrder::Any,
         }),
     ))
     .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(
