@@ -214,9 +214,12 @@ mod tests {
             pairs.map(|(a, b)| f64::from(*a) * f64::from(*b)).sum()
         };
         for seed in 0..5 {
-            let code: Vec<f32> = (0..18)
-                .map(|i| (1.7 * i as f32 + seed as f32).sin() + 0.3 * (i as f32).cos())
-                .collect();
+            // Bones that are bent against each other, but not turned about: there the way between them is any.
+            let number = |i: usize| {
+                let common = (1.7 * (i / 6 * 2 + i % 2) as f32 + seed as f32).sin();
+                1.5 * common + 0.5 * (2.3 * i as f32).sin()
+            };
+            let code: Vec<f32> = (0..18).map(number).collect();
             let mut features = vec![0.0; 45];
             rotations.expand(&code, &mut features);
             let (mut torques, mut found) = (vec![Vec3::ZERO; 3], vec![0.0; 18]);
