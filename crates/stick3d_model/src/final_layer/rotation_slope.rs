@@ -213,8 +213,8 @@ mod tests {
             let pairs = features.iter().zip(&weights);
             pairs.map(|(a, b)| f64::from(*a) * f64::from(*b)).sum()
         };
-        for seed in 0..5 {
-            // Bones that are bent against each other, but not turned about: there the way between them is any.
+        for seed in 0..3 {
+            // Bones are bent by up to a right angle against each other: near half a turn the way between them is any.
             let number = |i: usize| {
                 let common = (1.7 * (i / 6 * 2 + i % 2) as f32 + seed as f32).sin();
                 1.5 * common + 0.5 * (2.3 * i as f32).sin()
