@@ -7,11 +7,14 @@
 #     tests/draw_stick_figure.sh target/release/examples/pose_editor assets/sketches/horse_walk.json [OUT.png]
 #
 # starts the editor with the sketch's figure, draws, takes a picture of the screen as OUT.png (needs ImageMagick), and
-# ends the editor. Its window has to be the focused one, 1600 x 900 at the screen's top left.
+# ends the editor. AIM=8 lets strokes begin and end up to so many pixels beside their joints, and SAVE=FILE.json keeps what
+# the editor saved. Its window has to be the focused one, 1600 x 900 at the screen's top left.
 set -euo pipefail
 editor="$(realpath "$1")"
 sketch="$(realpath "$2")"
 out="${3:+$(realpath "$3")}"
+kept="${SAVE:+$(realpath "$SAVE")}"
+aim="${AIM:-0}"
 figures="$(realpath "$(dirname "$0")/../crates/stick3d_figure/figures")"
 name="$(sed -n 's/.*"figure": *"\([a-z_]*\)".*/\1/p' "$sketch")"
 work="$(mktemp -d)"
@@ -53,10 +56,13 @@ sleep 6
 
 RANDOM=7
 tremor() { echo $((RANDOM % 5 - 2)); }
+beside() { echo $((RANDOM % (2 * aim + 1) - aim)); }
 stroke() {
   local from to steps=14 step
   read -r -a from <<<"${at[$1]}"
   read -r -a to <<<"${at[$2]}"
+  from=($((from[0] + $(beside))) $((from[1] + $(beside))))
+  to=($((to[0] + $(beside))) $((to[1] + $(beside))))
   xdotool mousemove $((from[0] + $(tremor))) $((from[1] + $(tremor))) mousedown 1
   for step in $(seq "$steps"); do
     xdotool mousemove \
@@ -103,6 +109,7 @@ test -s "${name}_sketch.json" || { echo "the figure was not complete, and could 
 xdotool mousemove 1200 60
 sleep 5
 [ -z "$out" ] || import -window root "$out"
+[ -z "$kept" ] || cp "${name}_sketch.json" "$kept"
 
 joints "${name}_sketch.json" | sort >read
 awk -v u="$unit_per_px" -v ox="${origin[0]}" -v oy="${origin[1]}" -v order="$order" '

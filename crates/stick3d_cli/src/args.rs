@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use stick3d_train::device::ComputeDevice;
 use stick3d_train::landmark::Preset;
 
 use crate::paper::PaperArguments;
@@ -291,6 +292,9 @@ pub(crate) struct TrainArguments {
     /// What all random numbers depend on; the same seed gives the same file
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
+    /// What to compute on: flex, ndarray, wgpu, cuda, cuda:1, rocm, remote:ws://HOST:PORT; those built in
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub(crate) device: ComputeDevice,
     /// Where checkpoints, the loss log (CSV) and the loss plot go; a run that was stopped goes on from here
     #[arg(long, value_name = "DIR", default_value = "out/train")]
     pub(crate) work_dir: PathBuf,

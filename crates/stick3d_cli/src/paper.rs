@@ -121,7 +121,10 @@ impl Keys {
 pub(crate) fn train(arguments: &TrainArguments) -> Outcome {
     let start = Instant::now();
     let Keys { set, held_out } = keys(arguments)?;
-    let config = config(&arguments.paper, &set, arguments.seed, arguments.quick)?;
+    let config = PaperConfig {
+        device: arguments.device.clone(),
+        ..config(&arguments.paper, &set, arguments.seed, arguments.quick)?
+    };
     let samples = set
         .samples(arguments.paper.split.into(), &held_out, config.seed)
         .map_err(anyhow::Error::from)?;

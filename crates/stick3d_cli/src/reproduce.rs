@@ -7,6 +7,7 @@ use clap::Args;
 use stick3d_figure::figure::Figure;
 use stick3d_figure::names::nearest;
 use stick3d_model::Model;
+use stick3d_train::device::ComputeDevice;
 use stick3d_train::pose::SHIPPED;
 use stick3d_train::reproduce::{self, ReproduceConfig, ReproduceError, Subject};
 
@@ -44,6 +45,9 @@ pub(crate) struct ReproduceArguments {
     /// What all random numbers depend on
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
+    /// What to compute on: flex, ndarray, wgpu, cuda, cuda:1, rocm, remote:ws://HOST:PORT; those built in
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub(crate) device: ComputeDevice,
     /// Only these of the shipped bodies; all of them without it
     #[arg(long, value_name = "NAME", conflicts_with_all = ["meshes", "rig"])]
     pub(crate) only: Vec<String>,
@@ -102,6 +106,7 @@ fn config(arguments: &ReproduceArguments) -> Outcome<ReproduceConfig> {
         seed: arguments.seed,
         epochs_share,
         hidden: arguments.hidden.unwrap_or(hidden),
+        device: arguments.device.clone(),
         command: format!("stick3d {}", words.join(" ")),
     })
 }

@@ -133,5 +133,9 @@ pub(crate) fn quicker(arguments: &TrainArguments, recipe: TrainConfig) -> Outcom
             stage.epochs = stage.epochs.div_ceil(QUICK);
         }
     }
-    recipe::changed(config, &arguments.changes)
+    let config = recipe::changed(config, &arguments.changes)?;
+    Ok(TrainConfig {
+        device: arguments.device.clone(),
+        ..config
+    })
 }

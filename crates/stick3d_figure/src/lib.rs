@@ -63,7 +63,10 @@ pub use interchange::{Drawing, InterchangeError};
 pub use mesh::{MeshError, NormalAdjacency, TriangleMesh};
 pub use preview::complete_from_template;
 pub use recognize::any_order::{AnyOrder, recognize_any};
-pub use recognize::{FreeReading, Pen, Progress, RecognizeError, progress, read_freely, recognize};
+pub use recognize::{
+    FreeReading, Pen, Progress, RecognizeError, progress, read_freely, recognize,
+    recognize_finished,
+};
 pub use regressor::{JointRegressor, RegressorError};
 pub use scribble::is_scribble;
 pub use sketch::{Sketch, SketchError};

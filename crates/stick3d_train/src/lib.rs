@@ -5,6 +5,7 @@
 
 pub mod bake;
 pub mod dataset;
+pub mod device;
 pub mod evaluate;
 pub mod format;
 pub mod guess;

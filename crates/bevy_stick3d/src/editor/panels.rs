@@ -34,7 +34,7 @@ const FIGURE_KEYS: [Key; 9] = [
 ];
 
 /// The keys, the longer combinations first: a match takes the key from those after it.
-const SHORTCUTS: [(Modifiers, Key, Action); 9] = [
+const SHORTCUTS: [(Modifiers, Key, Action); 10] = [
     (COMMAND_SHIFT, Key::Z, Action::Redo),
     (Modifiers::COMMAND, Key::Y, Action::Redo),
     (Modifiers::COMMAND, Key::Z, Action::Undo),
@@ -43,6 +43,7 @@ const SHORTCUTS: [(Modifiers, Key, Action); 9] = [
     (Modifiers::NONE, Key::M, Action::Mirror),
     (Modifiers::NONE, Key::X, Action::SwapSides),
     (Modifiers::NONE, Key::O, Action::Order),
+    (Modifiers::NONE, Key::Enter, Action::Finish),
     (Modifiers::NONE, Key::Escape, Action::Clear),
 ];
 

@@ -54,7 +54,7 @@ fn in_any_order(drawing: &SketchDrawing) -> (String, &'static str) {
     let placed = &drawing.live_progress().placed;
     let ends = |joint: &usize| figure.bones.iter().filter(|b| b.contains(joint)).count() == 1;
     let mut missing = (0..placed.len()).filter(|joint| placed[*joint].is_none());
-    let hint = "X swaps left and right of a limb. Scribble takes back the last stroke.";
+    let hint = "Enter: finished, the rest as it stands. X swaps left and right. A scribble undoes.";
     if drawing.guess().is_none() {
         return ("Go on: the body comes with its torso".to_owned(), hint);
     }

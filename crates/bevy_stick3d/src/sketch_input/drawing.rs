@@ -340,6 +340,23 @@ impl SketchDrawing {
         }
     }
 
+    /// Takes an unfinished drawing for finished: what is not there is as in [`SketchDrawing::guess`]. Says whether enough
+    /// was drawn.
+    pub fn finish(&mut self) -> bool {
+        if self.ink.sketch.is_some() {
+            return true;
+        }
+        let Some(Ok(sketch)) = self.guess().map(|points| Sketch::new(&self.figure, points)) else {
+            return false;
+        };
+        let ink = Ink {
+            sketch: Some(sketch),
+            ..self.ink.clone()
+        };
+        self.step(ink, None);
+        true
+    }
+
     /// Takes everything off the canvas.
     pub fn clear(&mut self) {
         if self.ink != Ink::default() {

@@ -2,6 +2,8 @@
 
 mod canvas;
 mod drawing;
+#[cfg(test)]
+mod growing;
 mod guide;
 mod pen;
 

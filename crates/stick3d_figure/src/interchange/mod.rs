@@ -15,7 +15,7 @@ use glam::Vec2;
 use thiserror::Error;
 
 use crate::figure::Figure;
-use crate::recognize::{RecognizeError, recognize};
+use crate::recognize::{RecognizeError, recognize_finished};
 use crate::sketch::{Sketch, SketchError};
 use crate::stroke::{Stroke, StrokeError};
 
@@ -98,7 +98,8 @@ impl Drawing {
         write::json(figure, self)
     }
 
-    /// The drawing as a sketch: path points are averaged, strokes recognised.
+    /// The drawing as a sketch: path points are averaged, strokes recognised along the figure's path or, where that is
+    /// likelier, in any order ([`recognize_finished`]).
     ///
     /// # Errors
     /// [`InterchangeError::Sketch`], [`InterchangeError::Recognize`].
@@ -106,7 +107,7 @@ impl Drawing {
         match self {
             Self::Joints(sketch) => Ok(Sketch::new(figure, sketch.points().to_vec())?),
             Self::Path(points) => Ok(Sketch::from_path(figure, points)?),
-            Self::Strokes(strokes) => Ok(recognize(figure, strokes)?),
+            Self::Strokes(strokes) => Ok(recognize_finished(figure, strokes)?),
         }
     }
 }

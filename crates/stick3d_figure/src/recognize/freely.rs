@@ -3,11 +3,12 @@
 
 use glam::Vec2;
 
-use super::any_order::cost::{LEFTOVER_COST, LONGER_SPREAD, MAX_LENGTH_COST, SHORTER_SPREAD};
-use super::any_order::{AnyOrder, recognize_any, sides};
-use super::{Pen, Progress, progress};
-use crate::edit::distance_to_line;
+use super::any_order::cost::{LONGER_SPREAD, MAX_LENGTH_COST, SHORTER_SPREAD};
+use super::any_order::{recognize_any, sides};
+use super::coverage::EvenInk;
+use super::{Pen, Progress, RecognizeError, begun, progress, recognize};
 use crate::figure::{Figure, Side};
+use crate::sketch::Sketch;
 use crate::stroke::{Stroke, bounds_px};
 
 /// Logarithm by which figures differ from the size that is usual on their canvas.
@@ -18,8 +19,6 @@ const SIDE_COST: f32 = 0.5;
 /// How much dearer the reading along the path may be before it is given up for another one: who draws along the path
 /// by chance draws few likely bones.
 const PATH_BONUS: f32 = 0.5;
-/// Ink farther from all bones than this part of the drawing's diagonal is not explained by them.
-const NEAR_BONE: f32 = 0.05;
 /// Readings less sure than this are no ground to show a body on.
 const SURE: f32 = 0.6;
 /// With more unexplained ink than this share, a drawing is not finished.
@@ -46,6 +45,36 @@ pub struct FreeReading {
 ///
 /// Its work is bounded, also for what is no figure: made for every time the pen lifts, not for every frame.
 pub fn read_freely(figure: &Figure, strokes: &[Stroke], usual_scale: f32) -> FreeReading {
+    let mut reading = as_it_looks(figure, strokes, usual_scale);
+    if begun::shorten(figure, strokes, usual_scale, &mut reading.progress.placed) {
+        reading.progress = progress_of(figure, reading.progress.placed, false);
+    }
+    if reading.progress.complete
+        && EvenInk::of(strokes).misses_a_bone(figure, &reading.progress.placed)
+    {
+        reading.progress.complete = false;
+    }
+    reading
+}
+
+/// The sketch that finished strokes show: along the figure's sketch path, which says which limb is which, or in any order,
+/// if that is likelier; left and right are then those of [`recognize_any`]'s rule.
+///
+/// # Errors
+/// As [`recognize`], where neither reading has all joints.
+pub fn recognize_finished(figure: &Figure, strokes: &[Stroke]) -> Result<Sketch, RecognizeError> {
+    let extent = |(low, high): (Vec2, Vec2)| (high - low).max_element();
+    let scale = bounds_px(strokes).map_or(1.0, extent) / figure.template_extent_m();
+    let found = as_it_looks(figure, strokes, scale);
+    let joints: Option<Vec<Vec2>> = found.progress.placed.into_iter().collect();
+    match joints.filter(|_| !found.along_path && found.progress.complete) {
+        Some(joints) => Ok(Sketch::new(figure, joints)?),
+        None => recognize(figure, strokes),
+    }
+}
+
+/// The reading in which limbs are whole that may as well be half drawn.
+fn as_it_looks(figure: &Figure, strokes: &[Stroke], usual_scale: f32) -> FreeReading {
     let along_path = progress(figure, strokes, Pen::Up);
     let Ok(any) = recognize_any(figure, strokes) else {
         return FreeReading {
@@ -54,8 +83,9 @@ pub fn read_freely(figure: &Figure, strokes: &[Stroke], usual_scale: f32) -> Fre
             is_sure: true,
         };
     };
-    let ink = ink_of(strokes);
-    let along_path_cost = ink.cost_beyond(left_over(&ink, figure, &along_path.placed))
+    let ink = EvenInk::of(strokes);
+    let along_path_cost = ink.cost_beyond(ink.left_over(figure, &along_path.placed))
+        + ink.cost_without(figure, &along_path.placed)
         + shape_cost(figure, &along_path.placed, usual_scale);
     let any_cost = ink.cost_beyond(any.leftover) + shape_cost(figure, &any.joints, usual_scale);
     if along_path_cost <= any_cost + PATH_BONUS {
@@ -69,7 +99,7 @@ pub fn read_freely(figure: &Figure, strokes: &[Stroke], usual_scale: f32) -> Fre
     }
     FreeReading {
         is_sure: any.confidence >= SURE,
-        progress: progress_of(figure, &any),
+        progress: progress_of(figure, any.joints, any.leftover <= MAX_LEFTOVER),
         along_path: false,
     }
 }
@@ -84,8 +114,8 @@ fn put_on_sides(figure: &Figure, placed: &mut [Option<Vec2>]) {
     }
 }
 
-fn progress_of(figure: &Figure, any: &AnyOrder) -> Progress {
-    let placed = any.joints.clone();
+/// How far a drawing has come that does not follow the path.
+fn progress_of(figure: &Figure, placed: Vec<Option<Vec2>>, is_clear: bool) -> Progress {
     let drawn = |bone: usize| {
         figure.bones[bone]
             .iter()
@@ -102,56 +132,9 @@ fn progress_of(figure: &Figure, any: &AnyOrder) -> Progress {
         next_joint: next.map(|next| path[next]),
         from_joint: next.and_then(|next| Some(path[next.checked_sub(1)?])),
         fraction: fraction.clamp(0.0, 1.0),
-        complete: any.is_complete() && any.leftover <= MAX_LEFTOVER,
+        complete: is_clear && next.is_none(),
         placed,
     }
-}
-
-/// Points along the ink, as if it were drawn evenly.
-struct EvenInk {
-    points: Vec<Vec2>,
-    length: f32,
-    diagonal: f32,
-}
-
-impl EvenInk {
-    /// What a reading costs that leaves this share of the ink over.
-    fn cost_beyond(&self, share: f32) -> f32 {
-        LEFTOVER_COST * share * self.length / self.diagonal
-    }
-}
-
-fn ink_of(strokes: &[Stroke]) -> EvenInk {
-    let (low, high) = bounds_px(strokes).unwrap_or_default();
-    let diagonal = low.distance(high).max(f32::MIN_POSITIVE);
-    let spacing = NEAR_BONE * diagonal;
-    let even = |stroke: &Stroke| {
-        let count = (stroke.length_px() / spacing).round() as usize + 2;
-        stroke.resampled(count)
-    };
-    EvenInk {
-        points: strokes
-            .iter()
-            .flat_map(even)
-            .map(|point| point.position_px)
-            .collect(),
-        length: strokes.iter().map(Stroke::length_px).sum(),
-        diagonal,
-    }
-}
-
-/// The share of the ink that is beside all bones.
-fn left_over(ink: &EvenInk, figure: &Figure, placed: &[Option<Vec2>]) -> f32 {
-    let bones: Vec<[Vec2; 2]> = figure
-        .bones
-        .iter()
-        .filter_map(|&[a, b]| Some([placed[a]?, placed[b]?]))
-        .collect();
-    let beside = |point: &&Vec2| {
-        let away = bones.iter().map(|&[a, b]| distance_to_line(**point, a, b));
-        away.fold(f32::INFINITY, f32::min) > NEAR_BONE * ink.diagonal
-    };
-    ink.points.iter().filter(beside).count() as f32 / ink.points.len().max(1) as f32
 }
 
 /// How unlikely it is that a figure was meant so large, so proportioned and so directed.

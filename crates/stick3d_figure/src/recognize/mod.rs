@@ -5,7 +5,9 @@
 //! are placed together, at the samples where straight pieces between them explain the ink best.
 
 pub mod any_order;
+mod begun;
 mod cost;
+mod coverage;
 mod freely;
 mod ink;
 mod plan;
@@ -19,7 +21,7 @@ use thiserror::Error;
 use crate::figure::Figure;
 use crate::sketch::{Sketch, SketchError};
 use crate::stroke::Stroke;
-pub use freely::{FreeReading, read_freely};
+pub use freely::{FreeReading, read_freely, recognize_finished};
 use ink::{Ink, MAX_STROKES};
 use plan::Plan;
 use reading::Reading;
@@ -234,5 +236,7 @@ fn placed_joints(plan: &Plan, ink: &Ink, reading: &Reading) -> Vec<Option<Vec2>>
         .collect()
 }
 
+#[cfg(test)]
+mod growing;
 #[cfg(test)]
 mod tests;

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use stick3d_model::Architecture;
 use stick3d_model::architecture::{LATENT_LEN, NetworkSizes};
 
+use crate::device::ComputeDevice;
 use crate::training::{StageName, TrainError};
 
 /// A set with fewer key meshes than this is as small as the paper's of horses (8, and 72 of the man).
@@ -41,6 +42,9 @@ pub struct PaperConfig {
     pub first_log_variance: f32,
     /// Epochs between two checkpoints.
     pub checkpoint_every: usize,
+    /// What to compute on. The last digits of a model depend on it.
+    #[serde(skip)]
+    pub device: ComputeDevice,
 }
 
 impl PaperConfig {
@@ -60,6 +64,7 @@ impl PaperConfig {
             batch_size: if few { 8 } else { 64 },
             first_log_variance: -4.0,
             checkpoint_every: 10,
+            device: ComputeDevice::default(),
         }
     }
 

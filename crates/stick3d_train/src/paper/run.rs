@@ -92,7 +92,7 @@ impl<'a> Run<'a> {
             set,
             samples: &samples.train,
             config,
-            device: Device::flex().autodiff(),
+            device: config.device.open()?,
             scale_m: set.scale_m(),
         })
     }
@@ -305,7 +305,7 @@ impl<'a> Run<'a> {
 
     /// The same on a plain array.
     fn body_latents(&self, vae: &PaperAutoencoder) -> Result<Vec<f32>, TrainError> {
-        let (encoder, device) = (vae.encoder3d.valid(), Device::flex());
+        let (encoder, device) = (vae.encoder3d.valid(), self.device.clone().inner());
         let order: Vec<usize> = (0..self.samples.len()).collect();
         let mut latents = vec![];
         for chunk in order.chunks(CHUNK) {
@@ -318,7 +318,8 @@ impl<'a> Run<'a> {
     /// The latents of the training samples, from their bodies and from their sketches.
     fn latents(&self, networks: &PaperNetworks) -> Result<Vec<Vec<f32>>, TrainError> {
         let order: Vec<usize> = (0..self.samples.len()).collect();
-        let inputs = self.tensor(self.inputs_of(&order), order.len(), &Device::flex());
+        let device = self.device.clone().inner();
+        let inputs = self.tensor(self.inputs_of(&order), order.len(), &device);
         let mut latents = self.body_latents(&networks.vae)?;
         latents.extend(numbers(networks.encoder2d.valid().forward(inputs))?);
         let len = self.config.latent_len;

@@ -13,6 +13,8 @@ use stick3d_model::{Inference, Model};
 
 use super::*;
 use crate::dataset::random;
+#[cfg(feature = "ndarray")]
+use crate::device::ComputeDevice;
 use crate::rig::{Pose, Rig};
 use crate::training::{Progress, Quiet, StageName, TrainError};
 
@@ -254,4 +256,23 @@ fn a_configuration_without_sense_is_refused() {
         run(&still, None, &Quiet),
         Err(TrainError::Config(_))
     ));
+}
+
+#[test]
+#[cfg(feature = "ndarray")]
+fn devices_agree() {
+    let on = |device| {
+        let quick = PaperConfig {
+            epochs: [2, 1, 1],
+            device,
+            ..config()
+        };
+        run(&quick, None, &Quiet).unwrap().log.records
+    };
+    let [flex, ndarray] = [ComputeDevice::Flex, ComputeDevice::NdArray].map(on);
+    assert_eq!(flex.len(), 4);
+    for (flex, ndarray) in flex.iter().zip(&ndarray) {
+        let off = (flex.loss - ndarray.loss).abs() / flex.loss;
+        assert!(off < 2e-3, "{flex:?} {ndarray:?}");
+    }
 }

@@ -22,6 +22,7 @@ use image::{ImageError, RgbaImage};
 use stick3d_model::{Inference, Model, ModelError};
 use thiserror::Error;
 
+use crate::device::ComputeDevice;
 use crate::evaluate::EvalError;
 use crate::paper::{PaperSet, Samples, Split};
 use crate::training::{Progress, TrainError};
@@ -54,6 +55,8 @@ pub struct ReproduceConfig {
     pub epochs_share: f64,
     /// Width of the hidden layers.
     pub hidden: usize,
+    /// What to compute on.
+    pub device: ComputeDevice,
     /// The command, for the report.
     pub command: String,
 }

@@ -82,6 +82,7 @@ pub(super) fn all(prepared: &[Prepared<'_>], config: &ReproduceConfig) -> Vec<Ru
         seed: config.seed,
         hidden: config.hidden,
         latent_len,
+        device: config.device.clone(),
         ..PaperConfig::published(prepared[subject].subject.set.meshes.len())
     };
     let table_1 = |subject| [with(subject, LATENT_LEN).plain(), with(subject, LATENT_LEN)];

@@ -48,6 +48,7 @@ fn subject() -> Subject {
 fn the_report_has_tables_and_pictures_and_a_second_call_trains_nothing() {
     let subjects = [subject()];
     let config = ReproduceConfig {
+        device: ComputeDevice::Flex,
         seed: 1,
         epochs_share: 0.01,
         hidden: 16,

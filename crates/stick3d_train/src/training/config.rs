@@ -7,6 +7,7 @@ use stick3d_model::architecture::LATENT_LEN;
 
 use super::{StageName, TrainError};
 use crate::dataset::{Augmentation, BasisConfig, Rotations};
+use crate::device::ComputeDevice;
 use crate::size::relative_size;
 
 /// Everything that decides what a run yields, beside the rig and the poses.
@@ -42,6 +43,9 @@ pub struct TrainConfig {
     pub loss: LossWeights,
     /// Epochs between two checkpoints.
     pub checkpoint_every: usize,
+    /// What to compute on. The last digits of a model depend on it.
+    #[serde(skip)]
+    pub device: ComputeDevice,
 }
 
 fn one() -> usize {
@@ -136,7 +140,7 @@ impl TrainConfig {
                     learning_rate: 1e-3,
                 },
                 StageConfig {
-                    epochs: 20,
+                    epochs: 32,
                     learning_rate: 1e-3,
                 },
             ],
@@ -153,6 +157,7 @@ impl TrainConfig {
                 score: 1.0,
             },
             checkpoint_every: 2,
+            device: ComputeDevice::default(),
         }
     }
 

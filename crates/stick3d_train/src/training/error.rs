@@ -7,6 +7,7 @@ use stick3d_model::{InferError, ModelError};
 use thiserror::Error;
 
 use crate::dataset::BasisError;
+use crate::device::DeviceError;
 use crate::meshes::MeshSetError;
 use crate::rig::RigError;
 
@@ -42,6 +43,9 @@ pub enum TrainError {
         /// The loss.
         loss: f64,
     },
+    /// There is no such device.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
     /// The device failed.
     #[error("the tensor backend failed: {0}")]
     Backend(String),

@@ -109,7 +109,7 @@ impl<'a> Run<'a> {
             ));
         }
         let scale = code_scale(&material.bodies, config);
-        let device = Device::flex().autodiff();
+        let device = config.device.open()?;
         let extent_m = material.extent_m;
         let losses = Losses::new(figure, shape, &scale, extent_m, config.loss, &device);
         let data_hash = material.bodies.hash();

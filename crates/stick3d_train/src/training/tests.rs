@@ -11,6 +11,8 @@ use stick3d_model::{Inference, Model};
 
 use super::*;
 use crate::dataset::{BasisConfig, PoseStream, random};
+#[cfg(feature = "ndarray")]
+use crate::device::ComputeDevice;
 use crate::evaluate::{EvalConfig, EvalInput, evaluate};
 use crate::rig::{Pose, Rig};
 
@@ -209,4 +211,32 @@ fn a_configuration_that_contradicts_itself_is_refused() {
         run(&still, None, false, &Quiet),
         Err(TrainError::Config(_))
     ));
+}
+
+#[test]
+#[cfg(feature = "ndarray")]
+fn devices_agree() {
+    let quick = TrainConfig {
+        sampled_bodies: 64,
+        stages: [StageConfig {
+            epochs: 1,
+            learning_rate: 1e-3,
+        }; 3],
+        ..config()
+    };
+    let on = |device| {
+        let config = TrainConfig {
+            device,
+            ..quick.clone()
+        };
+        run(&config, None, false, &Quiet).unwrap().log.records
+    };
+    let [flex, ndarray] = [ComputeDevice::Flex, ComputeDevice::NdArray].map(on);
+    assert_eq!(flex.len(), 3);
+    for (flex, ndarray) in flex.iter().zip(&ndarray) {
+        for ((term, a), (_, b)) in flex.terms.iter().zip(&ndarray.terms) {
+            let off = (a - b).abs() / a.abs().max(1e-3);
+            assert!(off < 2e-3, "{:?} {term}: {a} and {b}", flex.stage);
+        }
+    }
 }

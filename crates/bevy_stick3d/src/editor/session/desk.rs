@@ -84,7 +84,9 @@ impl Desk<'_, '_> {
             Action::Choose(index) => self.choose(index),
             Action::Switch(mode) => self.switch(mode),
             Action::Undo | Action::Redo => self.step_in_history(action == Action::Undo),
-            Action::Mirror | Action::SwapSides | Action::Clear => self.change_drawing(action),
+            Action::Mirror | Action::SwapSides | Action::Finish | Action::Clear => {
+                self.change_drawing(action)
+            }
             Action::Order => self.change_order(),
             Action::Alternative(_) | Action::NextAlternative | Action::LastAlternative => {
                 self.choose_body(action);
@@ -150,6 +152,9 @@ impl Desk<'_, '_> {
             }
             Action::SwapSides => {
                 (!drawing.swap_sides()).then_some("Point at an arm or a leg, then press X")
+            }
+            Action::Finish => {
+                (!drawing.finish()).then_some("Draw the torso first, then press Enter")
             }
             _ => (!drawing.mirror()).then_some("There is nothing to mirror yet"),
         };

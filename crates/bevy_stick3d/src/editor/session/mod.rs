@@ -100,6 +100,8 @@ pub(super) enum Action {
     Mirror,
     /// Exchanges the left and the right limb of a pair.
     SwapSides,
+    /// Takes an unfinished drawing for finished.
+    Finish,
     /// In any order, or along the path.
     Order,
     /// Another of the bodies that the drawing may mean.

@@ -1,0 +1,87 @@
+//! Tests of drawings that the pen makes bone by bone, in whatever order.
+
+use bevy::math::Vec2;
+use stick3d_figure::Figure;
+
+use super::SketchDrawing;
+
+/// A man who waves, standing on one leg and a half: metres.
+const WAVE: [(&str, [f32; 2]); 11] = [
+    ("forehead", [0.02, 1.70]),
+    ("neck", [0.0, 1.49]),
+    ("elbow_r", [-0.31, 1.58]),
+    ("hand_r", [-0.36, 1.92]),
+    ("elbow_l", [0.24, 1.22]),
+    ("hand_l", [0.32, 0.92]),
+    ("abdomen", [0.0, 0.97]),
+    ("knee_r", [-0.13, 0.52]),
+    ("foot_r", [-0.17, 0.05]),
+    ("knee_l", [0.14, 0.52]),
+    ("foot_l", [0.22, 0.05]),
+];
+
+/// Per joint of the man where it is on the canvas.
+fn wave() -> Vec<Vec2> {
+    let mut points = vec![Vec2::ZERO; WAVE.len()];
+    for (name, [x, y]) in WAVE {
+        points[Figure::human().joint_index(name).unwrap()] = 418.0 * Vec2::new(x, y - 0.98);
+    }
+    points
+}
+
+fn draw(drawing: &mut SketchDrawing, from: Vec2, to: Vec2) {
+    drawing.press(from, 0.0);
+    for step in 1..=14 {
+        drawing.move_to(from.lerp(to, step as f32 / 14.0), 0.0);
+    }
+    drawing.release();
+}
+
+#[test]
+fn a_bone_at_a_time_in_whatever_order() {
+    let human = Figure::human();
+    let points = wave();
+    let count = human.bones.len();
+    // Steps without a common divisor with the number of bones reach all of them.
+    let orders = [1, 3, 7, 9]
+        .into_iter()
+        .flat_map(|step| (0..count).map(move |start| (start, step)));
+    for order in orders {
+        let (start, step) = order;
+        let bones = (0..count).map(|i| human.bones[(start + step * i) % count]);
+        let mut drawing = SketchDrawing::default();
+        for [a, b] in bones {
+            draw(&mut drawing, points[a], points[b]);
+        }
+        let sketch = drawing.sketch().map(|sketch| sketch.points().to_vec());
+        let Some(sketch) = sketch else {
+            panic!("order {order:?}: not finished: {:?}", drawing.joints());
+        };
+        for (joint, (found, meant)) in human.joints.iter().zip(sketch.iter().zip(&points)) {
+            let off = found.distance(*meant);
+            assert!(off < 25.0, "order {order:?}: {} is {off} off", joint.name);
+        }
+    }
+}
+
+#[test]
+fn enter_finishes_what_has_a_torso() {
+    let human = Figure::human();
+    let points = wave();
+    let joint = |name: &str| human.joint_index(name).unwrap();
+    let mut drawing = SketchDrawing::default();
+    let bone = |drawing: &mut SketchDrawing, from: &str, to: &str| {
+        draw(drawing, points[joint(from)], points[joint(to)]);
+    };
+    assert!(!drawing.finish(), "an empty sheet");
+    bone(&mut drawing, "forehead", "neck");
+    bone(&mut drawing, "neck", "abdomen");
+    bone(&mut drawing, "neck", "elbow_r");
+    bone(&mut drawing, "elbow_r", "hand_r");
+    assert!(drawing.sketch().is_none());
+    let guess = drawing.guess().unwrap();
+    assert!(drawing.finish());
+    assert_eq!(drawing.sketch().unwrap().points(), guess);
+    drawing.undo();
+    assert!(drawing.sketch().is_none() && drawing.strokes().len() == 4);
+}
