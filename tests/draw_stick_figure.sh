@@ -118,8 +118,8 @@ awk -v u="$unit_per_px" -v ox="${origin[0]}" -v oy="${origin[1]}" -v order="$ord
     return sqrt(((px - ox) * u - x[joint]) ^ 2 + ((oy - py) * u - y[joint]) ^ 2)
   }
   function mirror(joint) {
-    if (joint ~ /r$/) return substr(joint, 1, length(joint) - 1) "l"
-    if (joint ~ /l$/) return substr(joint, 1, length(joint) - 1) "r"
+    if (joint ~ /_.?r$/) return substr(joint, 1, length(joint) - 1) "l"
+    if (joint ~ /_.?l$/) return substr(joint, 1, length(joint) - 1) "r"
     return joint
   }
   NR == FNR { x[$1] = $2; y[$1] = $3; next }

@@ -40,7 +40,7 @@ impl Alternative {
 /// The first answer is at least so likely, share of the likeliest one's probability.
 const LIKELY_SHARE: f32 = 0.25;
 
-/// Alternatives, the likeliest first, and memory for them that is used again.
+/// Alternatives, the first answer first, then the likeliest, and memory for them that is used again.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Alternatives {
     list: Vec<Alternative>,
@@ -51,13 +51,14 @@ impl Alternatives {
     /// The most that there are of one drawing.
     pub const MOST: usize = 8;
 
-    /// The alternatives, the likeliest first; empty before the first [`Inference::infer`](super::Inference::infer).
+    /// The alternatives: the first answer, which is nearest to all the likely ones, then the others, the likeliest first.
+    /// Empty before the first [`Inference::infer`](super::Inference::infer).
     #[must_use]
     pub fn as_slice(&self) -> &[Alternative] {
         &self.list[..self.len]
     }
 
-    /// The likeliest.
+    /// The first answer.
     #[must_use]
     pub fn first(&self) -> Option<&Alternative> {
         self.as_slice().first()
