@@ -85,7 +85,7 @@ impl Desk<'_, '_> {
             Action::Switch(mode) => self.switch(mode),
             Action::Undo | Action::Redo => self.step_in_history(action == Action::Undo),
             Action::Mirror | Action::SwapSides | Action::Finish | Action::Clear => {
-                self.change_drawing(action)
+                self.change_drawing(action);
             }
             Action::Order => self.change_order(),
             Action::Alternative(_) | Action::NextAlternative | Action::LastAlternative => {
