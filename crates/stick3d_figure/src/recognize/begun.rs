@@ -115,10 +115,11 @@ fn scale(figure: &Figure, tails: &[Tail], placed: &[Option<Vec2>]) -> f32 {
     let (drawn, template) = figure
         .bones
         .iter()
-        .filter(is_sure)
-        .filter_map(|&[a, b]| {
+        .enumerate()
+        .filter(|(_, joints)| is_sure(joints))
+        .filter_map(|(bone, &[a, b])| {
             let drawn = placed[a]?.distance(placed[b]?);
-            Some((drawn, figure.template[a].distance(figure.template[b])))
+            Some((drawn, figure.template_bone_length(bone)))
         })
         .fold((0.0, 0.0), |sum, bone| (sum.0 + bone.0, sum.1 + bone.1));
     if template > 0.0 {

@@ -45,13 +45,12 @@ pub struct FreeReading {
 ///
 /// Its work is bounded, also for what is no figure: made for every time the pen lifts, not for every frame.
 pub fn read_freely(figure: &Figure, strokes: &[Stroke], usual_scale: f32) -> FreeReading {
-    let mut reading = as_it_looks(figure, strokes, usual_scale);
+    let ink = EvenInk::of(strokes);
+    let mut reading = as_it_looks(figure, strokes, &ink, usual_scale);
     if begun::shorten(figure, strokes, usual_scale, &mut reading.progress.placed) {
         reading.progress = progress_of(figure, reading.progress.placed, false);
     }
-    if reading.progress.complete
-        && EvenInk::of(strokes).misses_a_bone(figure, &reading.progress.placed)
-    {
+    if reading.progress.complete && ink.misses_a_bone(figure, &reading.progress.placed) {
         reading.progress.complete = false;
     }
     reading
@@ -65,7 +64,7 @@ pub fn read_freely(figure: &Figure, strokes: &[Stroke], usual_scale: f32) -> Fre
 pub fn recognize_finished(figure: &Figure, strokes: &[Stroke]) -> Result<Sketch, RecognizeError> {
     let extent = |(low, high): (Vec2, Vec2)| (high - low).max_element();
     let scale = bounds_px(strokes).map_or(1.0, extent) / figure.template_extent_m();
-    let found = as_it_looks(figure, strokes, scale);
+    let found = as_it_looks(figure, strokes, &EvenInk::of(strokes), scale);
     let joints: Option<Vec<Vec2>> = found.progress.placed.into_iter().collect();
     match joints.filter(|_| !found.along_path && found.progress.complete) {
         Some(joints) => Ok(Sketch::new(figure, joints)?),
@@ -74,7 +73,12 @@ pub fn recognize_finished(figure: &Figure, strokes: &[Stroke]) -> Result<Sketch,
 }
 
 /// The reading in which limbs are whole that may as well be half drawn.
-fn as_it_looks(figure: &Figure, strokes: &[Stroke], usual_scale: f32) -> FreeReading {
+fn as_it_looks(
+    figure: &Figure,
+    strokes: &[Stroke],
+    ink: &EvenInk,
+    usual_scale: f32,
+) -> FreeReading {
     let along_path = progress(figure, strokes, Pen::Up);
     let Ok(any) = recognize_any(figure, strokes) else {
         return FreeReading {
@@ -83,7 +87,6 @@ fn as_it_looks(figure: &Figure, strokes: &[Stroke], usual_scale: f32) -> FreeRea
             is_sure: true,
         };
     };
-    let ink = EvenInk::of(strokes);
     let along_path_cost = ink.cost_beyond(ink.left_over(figure, &along_path.placed))
         + ink.cost_without(figure, &along_path.placed)
         + shape_cost(figure, &along_path.placed, usual_scale);

@@ -64,6 +64,18 @@ fn config() -> TrainConfig {
     }
 }
 
+/// A little of every stage.
+fn one_epoch_each() -> TrainConfig {
+    TrainConfig {
+        sampled_bodies: 64,
+        stages: [StageConfig {
+            epochs: 1,
+            learning_rate: 1e-3,
+        }; 3],
+        ..config()
+    }
+}
+
 fn run(
     config: &TrainConfig,
     folder: Option<&Path>,
@@ -139,14 +151,7 @@ fn a_run_learns_and_can_be_stopped_and_resumed_to_the_same_bytes() {
 
 #[test]
 fn evaluation_measures_model_and_baseline_alike() {
-    let quick = TrainConfig {
-        sampled_bodies: 64,
-        stages: [StageConfig {
-            epochs: 1,
-            learning_rate: 1e-3,
-        }; 3],
-        ..config()
-    };
+    let quick = one_epoch_each();
     let model = run(&quick, None, false, &Quiet).unwrap().model;
     let library: Vec<Pose> = stream(7).take(4).collect();
     let config = EvalConfig {
@@ -216,14 +221,7 @@ fn a_configuration_that_contradicts_itself_is_refused() {
 #[test]
 #[cfg(feature = "ndarray")]
 fn devices_agree() {
-    let quick = TrainConfig {
-        sampled_bodies: 64,
-        stages: [StageConfig {
-            epochs: 1,
-            learning_rate: 1e-3,
-        }; 3],
-        ..config()
-    };
+    let quick = one_epoch_each();
     let on = |device| {
         let config = TrainConfig {
             device,
