@@ -6,8 +6,8 @@
     reason = "a test fails by panicking, and may say why it skips"
 )]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "support/counting.rs"]
+mod counting;
 
 use bevy::app::{AnimationSystems, TaskPoolPlugin};
 use bevy::asset::AssetEventSystems;
@@ -16,33 +16,7 @@ use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use bevy_stick3d::HUMAN_MODEL;
 use bevy_stick3d::prelude::*;
-
-thread_local! {
-    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-#[allow(
-    unsafe_code,
-    reason = "the trait of allocators is unsafe; this one hands on to the system's"
-)]
-// SAFETY: every call is handed on to `System` unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller keeps the contract of `GlobalAlloc::alloc`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: `pointer` came from `System` with this layout.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
+use counting::allocations_so_far;
 
 /// How many allocations there were between the start of animation and the hand-over of assets.
 #[derive(Resource, Default)]
@@ -66,9 +40,9 @@ fn app() -> App {
     .insert_resource(TimeUpdateStrategy::ManualDuration(
         std::time::Duration::from_micros(16_667),
     ));
-    let start = |mut counted: ResMut<Counted>| counted.before = ALLOCATIONS.with(Cell::get);
+    let start = |mut counted: ResMut<Counted>| counted.before = allocations_so_far();
     let stop = |mut counted: ResMut<Counted>| {
-        counted.sum += ALLOCATIONS.with(Cell::get) - counted.before;
+        counted.sum += allocations_so_far() - counted.before;
     };
     app.init_resource::<Counted>().add_systems(
         PostUpdate,

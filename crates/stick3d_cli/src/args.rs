@@ -273,6 +273,17 @@ pub(crate) enum Up {
     Z,
 }
 
+/// What every training depends on.
+#[derive(Debug, Args)]
+pub(crate) struct RunArguments {
+    /// What all random numbers depend on; the same seed gives the same result
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// What to compute on: flex, ndarray, wgpu, cuda, cuda:1, rocm, remote:ws://HOST:PORT; those built in
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub(crate) device: ComputeDevice,
+}
+
 #[derive(Debug, Args)]
 #[command(mut_arg("meshes", |meshes| meshes.requires("figure")))]
 #[command(mut_arg("rig", |rig| rig.requires("figure")))]
@@ -289,12 +300,9 @@ pub(crate) struct TrainArguments {
     /// The figure file; the built-in human without it
     #[arg(long, value_name = "FILE")]
     pub(crate) figure: Option<PathBuf>,
-    /// What all random numbers depend on; the same seed gives the same file
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
-    /// What to compute on: flex, ndarray, wgpu, cuda, cuda:1, rocm, remote:ws://HOST:PORT; those built in
-    #[arg(long, value_name = "NAME", default_value_t)]
-    pub(crate) device: ComputeDevice,
+    /// Seed and device
+    #[command(flatten)]
+    pub(crate) run: RunArguments,
     /// Where checkpoints, the loss log (CSV) and the loss plot go; a run that was stopped goes on from here
     #[arg(long, value_name = "DIR", default_value = "out/train")]
     pub(crate) work_dir: PathBuf,

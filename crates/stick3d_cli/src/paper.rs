@@ -121,10 +121,7 @@ impl Keys {
 pub(crate) fn train(arguments: &TrainArguments) -> Outcome {
     let start = Instant::now();
     let Keys { set, held_out } = keys(arguments)?;
-    let config = PaperConfig {
-        device: arguments.device.clone(),
-        ..config(&arguments.paper, &set, arguments.seed, arguments.quick)?
-    };
+    let config = config(arguments, set.meshes.len())?;
     let samples = set
         .samples(arguments.paper.split.into(), &held_out, config.seed)
         .map_err(anyhow::Error::from)?;
@@ -165,7 +162,7 @@ pub(crate) fn train(arguments: &TrainArguments) -> Outcome {
 
 fn keys(arguments: &TrainArguments) -> Outcome<Keys> {
     if let (Some(folder), Some(figure)) = (&arguments.set.meshes, &arguments.figure) {
-        let (keys, said) = Keys::of_meshes(folder, &arguments.set, figure, arguments.seed)?;
+        let (keys, said) = Keys::of_meshes(folder, &arguments.set, figure, arguments.run.seed)?;
         println!("{said}");
         return Ok(keys);
     }
@@ -175,32 +172,29 @@ fn keys(arguments: &TrainArguments) -> Outcome<Keys> {
     };
     let corpus = Corpus::read(&arguments.body, Some(&figure))?;
     corpus.said.iter().for_each(|line| println!("{line}"));
-    Keys::of_rig(&corpus, &figure, arguments.seed)
+    Keys::of_rig(&corpus, &figure, arguments.run.seed)
 }
 
-fn config(
-    arguments: &PaperArguments,
-    set: &PaperSet,
-    seed: u64,
-    quick: bool,
-) -> Outcome<PaperConfig> {
-    let scale = arguments.epochs_scale;
+fn config(arguments: &TrainArguments, key_meshes: usize) -> Outcome<PaperConfig> {
+    let TrainArguments { run, paper, .. } = arguments;
+    let scale = paper.epochs_scale;
     if !(scale.is_finite() && scale > 0.0) {
         return Err(Failure::usage(anyhow::anyhow!(
             "--epochs-scale is {scale}; give a number above 0"
         )));
     }
     let published = PaperConfig {
-        seed,
-        hidden: arguments.hidden,
-        latent_len: arguments.latent,
-        ..PaperConfig::published(set.meshes.len())
+        seed: run.seed,
+        device: run.device.clone(),
+        hidden: paper.hidden,
+        latent_len: paper.latent,
+        ..PaperConfig::published(key_meshes)
     };
-    let config = match arguments.autoencoder {
+    let config = match paper.autoencoder {
         true => published.plain(),
         false => published,
     };
-    Ok(config.scaled(if quick { 0.1 * scale } else { scale }))
+    Ok(config.scaled(if arguments.quick { 0.1 * scale } else { scale }))
 }
 
 fn say(split: &str, measured: &Measured) {

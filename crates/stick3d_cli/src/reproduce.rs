@@ -7,11 +7,10 @@ use clap::Args;
 use stick3d_figure::figure::Figure;
 use stick3d_figure::names::nearest;
 use stick3d_model::Model;
-use stick3d_train::device::ComputeDevice;
 use stick3d_train::pose::SHIPPED;
 use stick3d_train::reproduce::{self, ReproduceConfig, ReproduceError, Subject};
 
-use crate::args::{BodyFiles, MeshFiles};
+use crate::args::{BodyFiles, MeshFiles, RunArguments};
 use crate::corpus::Corpus;
 use crate::failure::{Failure, Outcome};
 use crate::inputs;
@@ -42,12 +41,9 @@ pub(crate) struct ReproduceArguments {
     /// Width of the hidden layers [default: 512, or 256 with --quick]
     #[arg(long)]
     pub(crate) hidden: Option<usize>,
-    /// What all random numbers depend on
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
-    /// What to compute on: flex, ndarray, wgpu, cuda, cuda:1, rocm, remote:ws://HOST:PORT; those built in
-    #[arg(long, value_name = "NAME", default_value_t)]
-    pub(crate) device: ComputeDevice,
+    /// Seed and device
+    #[command(flatten)]
+    pub(crate) run: RunArguments,
     /// Only these of the shipped bodies; all of them without it
     #[arg(long, value_name = "NAME", conflicts_with_all = ["meshes", "rig"])]
     pub(crate) only: Vec<String>,
@@ -103,17 +99,17 @@ fn config(arguments: &ReproduceArguments) -> Outcome<ReproduceConfig> {
     }
     let words: Vec<String> = std::env::args().skip(1).collect();
     Ok(ReproduceConfig {
-        seed: arguments.seed,
+        seed: arguments.run.seed,
         epochs_share,
         hidden: arguments.hidden.unwrap_or(hidden),
-        device: arguments.device.clone(),
+        device: arguments.run.device.clone(),
         command: format!("stick3d {}", words.join(" ")),
     })
 }
 
 fn subjects(arguments: &ReproduceArguments) -> Outcome<Vec<Subject>> {
     if let (Some(folder), Some(figure)) = (&arguments.set.meshes, &arguments.figure) {
-        let (keys, said) = Keys::of_meshes(folder, &arguments.set, figure, arguments.seed)?;
+        let (keys, said) = Keys::of_meshes(folder, &arguments.set, figure, arguments.run.seed)?;
         println!("{said}");
         return Ok(vec![subject(keys, None)]);
     }
@@ -122,7 +118,7 @@ fn subjects(arguments: &ReproduceArguments) -> Outcome<Vec<Subject>> {
         let corpus = Corpus::read(&arguments.body, Some(&figure))?;
         corpus.said.iter().for_each(|line| println!("{line}"));
         return Ok(vec![subject(
-            Keys::of_rig(&corpus, &figure, arguments.seed)?,
+            Keys::of_rig(&corpus, &figure, arguments.run.seed)?,
             None,
         )]);
     }
@@ -141,7 +137,7 @@ fn subjects(arguments: &ReproduceArguments) -> Outcome<Vec<Subject>> {
     Figure::shipped()
         .into_iter()
         .filter(|figure| wanted(&figure.name))
-        .map(|figure| shipped(figure, arguments.seed))
+        .map(|figure| shipped(figure, arguments.run.seed))
         .collect()
 }
 

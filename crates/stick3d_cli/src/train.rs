@@ -123,7 +123,7 @@ fn config(arguments: &TrainArguments, figure: &Figure) -> Outcome<TrainConfig> {
 /// A recipe with the seed, the haste and the changes that were asked for.
 pub(crate) fn quicker(arguments: &TrainArguments, recipe: TrainConfig) -> Outcome<TrainConfig> {
     let mut config = TrainConfig {
-        seed: arguments.seed,
+        seed: arguments.run.seed,
         ..recipe
     };
     if arguments.quick {
@@ -135,7 +135,7 @@ pub(crate) fn quicker(arguments: &TrainArguments, recipe: TrainConfig) -> Outcom
     }
     let config = recipe::changed(config, &arguments.changes)?;
     Ok(TrainConfig {
-        device: arguments.device.clone(),
+        device: arguments.run.device.clone(),
         ..config
     })
 }

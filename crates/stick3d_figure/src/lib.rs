@@ -64,7 +64,7 @@ pub use mesh::{MeshError, NormalAdjacency, TriangleMesh};
 pub use preview::complete_from_template;
 pub use recognize::any_order::{AnyOrder, recognize_any};
 pub use recognize::{
-    FreeReading, Pen, Progress, RecognizeError, progress, read_freely, recognize,
+    FreeReading, Pen, Progress, RecognizeError, completes, progress, read_freely, recognize,
     recognize_finished,
 };
 pub use regressor::{JointRegressor, RegressorError};

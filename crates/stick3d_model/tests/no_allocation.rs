@@ -1,39 +1,13 @@
 //! A frame allocates nothing: sketch to latent, latent to mesh and normals, latent to joints, a motion's time to latent.
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "../../../tests/support/counting.rs"]
+mod counting;
 
+use counting::allocations_so_far;
 use glam::Vec3;
 use stick3d_figure::sketch::Sketch;
 use stick3d_model::latent::{Easing, MotionSettings};
 use stick3d_model::{Alternatives, Inference, LatentKey, Model, Motion};
-
-thread_local! {
-    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-#[allow(
-    unsafe_code,
-    reason = "the trait of allocators is unsafe; this one hands on to the system's"
-)]
-// SAFETY: every call is handed on to `System` unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller keeps the contract of `GlobalAlloc::alloc`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: `pointer` came from `System` with this layout.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
 
 #[test]
 fn a_frame_allocates_nothing() {
@@ -55,7 +29,7 @@ fn a_frame_allocates_nothing() {
     });
     let motion = Motion::new(&keys, MotionSettings::default(), &mut inference).unwrap();
 
-    let before = ALLOCATIONS.with(Cell::get);
+    let before = allocations_so_far();
     for _ in 0..3 {
         inference.encode(&sketch, &mut latent).unwrap();
         inference.infer(&sketch, &mut alternatives).unwrap();
@@ -70,7 +44,7 @@ fn a_frame_allocates_nothing() {
         assert!(motion.root_translation(time_s).is_some() && motion.trust(time_s) > 0.0);
         inference.trust(&latent).unwrap();
     }
-    assert_eq!(ALLOCATIONS.with(Cell::get) - before, 0);
+    assert_eq!(allocations_so_far() - before, 0);
     assert!(before > 0, "the counter counts");
     assert!(positions.iter().any(|p| p[1] > 0.3), "he stands");
 }

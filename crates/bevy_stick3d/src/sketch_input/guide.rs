@@ -72,7 +72,7 @@ fn centred(points: &[Vec2], scale: f32) -> Vec<Vec2> {
 /// Whether enough is drawn to guess the rest: every joint in the middle of the body from which limbs go out,
 /// and one more to tell the scale by.
 pub(super) fn is_enough(figure: &Figure, placed: &[Option<Vec2>]) -> bool {
-    let branches = |joint: usize| figure.bones.iter().filter(|b| b.contains(&joint)).count() > 1;
+    let branches = |joint: usize| figure.bones_at(joint) > 1;
     placed.len() == figure.joint_count()
         && placed.iter().flatten().count() > 1
         && (0..placed.len()).all(|joint| {

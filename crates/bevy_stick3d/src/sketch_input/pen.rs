@@ -4,7 +4,7 @@ use bevy::math::Vec2;
 use stick3d_figure::edit::{
     Grip, bone_lengths, distance_to_line, nearest_bone, nearest_joint, redrawn,
 };
-use stick3d_figure::{Drag, Pen, Sketch, Stroke, is_scribble, progress};
+use stick3d_figure::{Drag, Pen, Sketch, Stroke, completes, is_scribble, progress};
 
 use super::drawing::{DrawingChange, DrawingOrder, GRAB_RADIUS, Ink, SketchDrawing};
 
@@ -36,6 +36,8 @@ pub(super) struct Held {
     now_at: Vec2,
     /// It was moved: no click.
     is_moved: bool,
+    /// The pen's way, for it may have been a stroke.
+    way: Stroke,
 }
 
 impl Held {
@@ -51,14 +53,16 @@ impl SketchDrawing {
             .sketch()
             .and_then(|sketch| Drag::begin(sketch, at, GRAB_RADIUS));
         let mut stroke = Stroke::default();
+        let is_begun = stroke.push(at, time_s).is_ok();
         self.pen = match taken {
             Some(drag) => PenState::Dragging(Held {
                 drag,
                 pressed_at: at,
                 now_at: at,
                 is_moved: false,
+                way: stroke,
             }),
-            None if stroke.push(at, time_s).is_ok() => PenState::Drawing(stroke),
+            None if is_begun => PenState::Drawing(stroke),
             None => PenState::Idle,
         };
         self.hovered = self.dragged();
@@ -74,15 +78,12 @@ impl SketchDrawing {
                 self.look_at(at);
             }
             PenState::Drawing(stroke) => {
-                let moved = stroke
-                    .points()
-                    .last()
-                    .is_none_or(|last| last.position_px.distance_squared(at) > 0.25);
-                if moved && stroke.push(at, time_s).is_ok() {
+                if lengthen(stroke, at, time_s) {
                     self.live = None;
                 }
             }
             PenState::Dragging(held) => {
+                lengthen(&mut held.way, at, time_s);
                 held.is_moved |= at.distance(held.pressed_at) > CLICK;
                 if held.is_moved && at.is_finite() {
                     held.now_at = at;
@@ -104,7 +105,7 @@ impl SketchDrawing {
         match std::mem::take(&mut self.pen) {
             PenState::Idle => {}
             PenState::Drawing(stroke) => self.finish_stroke(stroke),
-            PenState::Dragging(held) if held.is_moved => self.finish_drag(),
+            PenState::Dragging(held) if held.is_moved => self.finish_drag(held.way),
             PenState::Dragging(held) => self.toggle_pin(held.joint()),
         }
     }
@@ -113,9 +114,7 @@ impl SketchDrawing {
     pub fn cancel(&mut self) {
         self.live = None;
         if let PenState::Dragging(_) = std::mem::take(&mut self.pen) {
-            let longest = std::mem::take(&mut self.longest);
-            self.show(self.history.present().clone());
-            self.longest = longest;
+            self.put_back();
         }
     }
 
@@ -183,8 +182,21 @@ impl SketchDrawing {
         }
     }
 
+    /// The joint in hand is where it was.
+    fn put_back(&mut self) {
+        let longest = std::mem::take(&mut self.longest);
+        self.show(self.history.present().clone());
+        self.longest = longest;
+    }
+
+    /// Lets a joint go, unless it turns out that the drawing only looked finished, and that this was one more stroke.
     /// What was foreshortened may become as long again as it was.
-    fn finish_drag(&mut self) {
+    fn finish_drag(&mut self, way: Stroke) {
+        if self.is_stroke(&way) {
+            self.put_back();
+            self.add_stroke(way);
+            return;
+        }
         let lengths = |sketch: &Sketch| bone_lengths(&self.figure, sketch.points());
         let before = self.history.present().sketch.as_ref().map(lengths);
         self.longest = match before {
@@ -209,6 +221,11 @@ impl SketchDrawing {
             self.draw_over(stroke);
             return;
         }
+        self.add_stroke(stroke);
+    }
+
+    /// One more stroke of the drawing.
+    fn add_stroke(&mut self, stroke: Stroke) {
         let mut ink = self.ink.clone();
         let positions = stroke.positions().collect();
         self.changes.push(DrawingChange::StrokeFinished(positions));
@@ -219,6 +236,18 @@ impl SketchDrawing {
             .filter(|_| reading.progress.complete)
             .and_then(|points| Sketch::new(&self.figure, points).ok());
         self.step(ink, Some(reading));
+    }
+
+    /// Whether the way of a joint in hand was rather a stroke of a drawing that was taken for finished too early: only
+    /// before anything else was done to that drawing, and not along the sketch path, where a finished drawing is finished.
+    fn is_stroke(&self, way: &Stroke) -> bool {
+        let fresh = self.history.present();
+        let is_fresh = fresh.pins.is_empty() && !fresh.strokes.is_empty();
+        if !is_fresh || self.order() == DrawingOrder::Guided || way.length_px() < SLIP {
+            return false;
+        }
+        let reading = self.read(&fresh.strokes, &fresh.exchanged);
+        reading.progress.complete && completes(&self.figure, &fresh.strokes, way)
     }
 
     /// A slip of the pen on a bone of a finished sketch is a click on its limb.
@@ -282,6 +311,15 @@ impl SketchDrawing {
             .filter_map(|&[a, b]| Stroke::from_positions([*points.get(a)?, *points.get(b)?]).ok())
             .collect()
     }
+}
+
+/// Adds a place to a stroke. Says whether it became longer.
+fn lengthen(stroke: &mut Stroke, at: Vec2, time_s: f64) -> bool {
+    let moved = stroke
+        .points()
+        .last()
+        .is_none_or(|last| last.position_px.distance_squared(at) > 0.25);
+    moved && stroke.push(at, time_s).is_ok()
 }
 
 /// The share of a stroke that is far from all bones.

@@ -56,7 +56,7 @@ pub fn redrawn(figure: &Figure, sketch: &Sketch, stroke: &Stroke) -> Option<Sket
                 continue;
             }
             let moved = end.distance(points[last]) / extent;
-            let is_begun = figure.bones.iter().filter(|b| b.contains(&last)).count() > 1;
+            let is_begun = figure.bones_at(last) > 1;
             let begun = if is_begun { BEGUN_COST } else { 0.0 };
             let cost = beside + RATIO_COST * ratio + END_COST * moved + begun;
             if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
@@ -94,9 +94,8 @@ fn runs(
     order: &[usize],
     above: impl Fn(usize) -> Option<(usize, f32)>,
 ) -> Vec<Run> {
-    let bones_at = |joint: usize| figure.bones.iter().filter(|b| b.contains(&joint)).count();
     let mut runs = Vec::new();
-    for &end in order.iter().filter(|&&end| bones_at(end) <= 2) {
+    for &end in order.iter().filter(|&&end| figure.bones_at(end) <= 2) {
         let mut joints = vec![end];
         let mut at = end;
         while let Some((from, _)) = above(at) {
@@ -105,7 +104,7 @@ fn runs(
                 from,
                 joints: ordered,
             });
-            if bones_at(from) > 2 {
+            if figure.bones_at(from) > 2 {
                 break;
             }
             joints.push(from);

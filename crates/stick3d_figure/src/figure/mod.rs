@@ -181,6 +181,12 @@ impl Figure {
             .map_or(0.0, |&[a, b]| self.template[a].distance(self.template[b]))
     }
 
+    /// How many bones meet at a joint: one at the end of a limb.
+    pub fn bones_at(&self, joint: usize) -> usize {
+        let meets = |bone: &&[usize; 2]| bone.contains(&joint);
+        self.bones.iter().filter(meets).count()
+    }
+
     /// The bones from the root outward, each as (nearer the root, farther from it): a bone comes after the one that it hangs
     /// on. Of a figure's bones, which are a tree over all joints, none is left out.
     pub fn bones_outward(&self) -> Vec<[usize; 2]> {

@@ -84,11 +84,10 @@ impl EvenInk {
     /// Whether a bone was put where nothing is drawn, to reach what is drawn beyond it. (Limbs end where there is ink, or in
     /// the middle of a loop.)
     pub(super) fn misses_a_bone(&self, figure: &Figure, placed: &[Option<Vec2>]) -> bool {
-        let bones_at = |joint: usize| figure.bones.iter().filter(|b| b.contains(&joint)).count();
         let inner = figure
             .bones
             .iter()
-            .filter(|bone| bone.iter().all(|&joint| bones_at(joint) > 1));
+            .filter(|bone| bone.iter().all(|&joint| figure.bones_at(joint) > 1));
         let ends = |&[a, b]: &[usize; 2]| Some([placed[a]?, placed[b]?]);
         inner
             .filter_map(ends)

@@ -21,6 +21,8 @@ const SIDE_COST: f32 = 0.5;
 const PATH_BONUS: f32 = 0.5;
 /// Readings less sure than this are no ground to show a body on.
 const SURE: f32 = 0.6;
+/// A stroke that lowers a drawing's cost by more than this belongs to it.
+const COMPLETING: f32 = 4.0;
 /// With more unexplained ink than this share, a drawing is not finished.
 const MAX_LEFTOVER: f32 = 0.25;
 
@@ -69,6 +71,17 @@ pub fn recognize_finished(figure: &Figure, strokes: &[Stroke]) -> Result<Sketch,
     match joints.filter(|_| !found.along_path && found.progress.complete) {
         Some(joints) => Ok(Sketch::new(figure, joints)?),
         None => recognize(figure, strokes),
+    }
+}
+
+/// Whether a drawing in any order is by far likelier with one more stroke than without it: it only looked finished before.
+/// (What the pen draws when it drags a joint of a finished drawing makes it less likely, or hardly likelier.)
+pub fn completes(figure: &Figure, strokes: &[Stroke], more: &Stroke) -> bool {
+    let cost = |strokes: &[Stroke]| recognize_any(figure, strokes).map(|found| found.cost);
+    let all = [strokes, std::slice::from_ref(more)].concat();
+    match (cost(strokes), cost(&all)) {
+        (Ok(without), Ok(with)) => with + COMPLETING < without,
+        _ => false,
     }
 }
 

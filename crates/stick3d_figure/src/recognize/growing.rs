@@ -2,10 +2,11 @@
 //! finished is.
 
 use glam::Vec2;
+use rand::Rng as _;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-use super::freely::{FreeReading, read_freely, recognize_finished};
+use super::freely::{FreeReading, completes, read_freely, recognize_finished};
 use crate::figure::Figure;
 use crate::simulate::any_order::{flat_pose, is_readable};
 use crate::simulate::{self, Hand};
@@ -32,23 +33,28 @@ fn read(figure: &Figure, strokes: &[Stroke]) -> FreeReading {
     read_freely(figure, strokes, HEIGHT_PX / figure.template_extent_m())
 }
 
-/// Per number of strokes how many of `rounds` drawings, a stroke per bone, shuffled, are taken for finished.
+/// Joints on the canvas, and their drawing: a stroke per bone, shuffled.
+fn shuffled(figure: &Figure, rng: &mut ChaCha8Rng) -> (Vec<Vec2>, Vec<Stroke>) {
+    let pose = std::iter::repeat_with(|| flat_pose(figure, rng))
+        .find(|pose| is_readable(figure, pose))
+        .unwrap();
+    let meant = simulate::on_canvas(&pose, HEIGHT_PX);
+    let mut lines: Vec<Vec<Vec2>> = figure
+        .bones
+        .iter()
+        .map(|bone| bone.map(|joint| meant[joint]).to_vec())
+        .collect();
+    lines.shuffle(rng);
+    let strokes = strokes(rng, &lines);
+    (meant, strokes)
+}
+
+/// Per number of strokes how many of `rounds` drawings are taken for finished.
 fn finished(figure: &Figure, rounds: u64) -> Vec<u64> {
     let count = figure.bones.len();
     let mut finished = vec![0; count + 1];
     for seed in 0..rounds {
-        let mut rng = simulate::rng(seed);
-        let pose = std::iter::repeat_with(|| flat_pose(figure, &mut rng))
-            .find(|pose| is_readable(figure, pose))
-            .unwrap();
-        let meant = simulate::on_canvas(&pose, HEIGHT_PX);
-        let mut lines: Vec<Vec<Vec2>> = figure
-            .bones
-            .iter()
-            .map(|bone| bone.map(|joint| meant[joint]).to_vec())
-            .collect();
-        lines.shuffle(&mut rng);
-        let strokes = strokes(&mut rng, &lines);
+        let (_, strokes) = shuffled(figure, &mut simulate::rng(seed));
         for n in 1..=count {
             finished[n] += u64::from(read(figure, &strokes[..n]).progress.complete);
         }
@@ -75,6 +81,34 @@ fn drawings_are_finished_with_their_last_bone() {
             "{}: {finished:?}",
             figure.name
         );
+    }
+}
+
+#[test]
+fn the_last_bone_completes_what_looked_finished_and_a_drag_does_not() {
+    for figure in [Figure::human(), Figure::horse()] {
+        let (mut early, mut completed, mut torn) = (0, 0, 0);
+        for seed in 0..150 {
+            let mut rng = simulate::rng(seed);
+            let (meant, drawn) = shuffled(figure, &mut rng);
+            let (last, before) = drawn.split_last().unwrap();
+            if read(figure, before).progress.complete {
+                early += 1;
+                completed += u32::from(completes(figure, before, last));
+            }
+            let joint = rng.random_range(0..meant.len());
+            let bone = figure.bones.iter().find(|bone| bone.contains(&joint));
+            let [a, b] = *bone.unwrap();
+            let fixed = meant[if a == joint { b } else { a }];
+            let turn = Vec2::from_angle(rng.random_range(-2.0..2.0));
+            let way = [meant[joint], fixed + turn.rotate(meant[joint] - fixed)];
+            let drag = &strokes(&mut rng, &[way.to_vec()])[0];
+            torn += u32::from(completes(figure, &drawn, drag));
+        }
+        let name = &figure.name;
+        assert!(early >= 5, "{name}: {early} looked finished before");
+        assert!(completed * 3 >= early * 2, "{name}: {completed} of {early}");
+        assert_eq!(torn, 0, "{name}: drags taken for strokes");
     }
 }
 

@@ -21,7 +21,7 @@ use thiserror::Error;
 use crate::figure::Figure;
 use crate::sketch::{Sketch, SketchError};
 use crate::stroke::Stroke;
-pub use freely::{FreeReading, read_freely, recognize_finished};
+pub use freely::{FreeReading, completes, read_freely, recognize_finished};
 use ink::{Ink, MAX_STROKES};
 use plan::Plan;
 use reading::Reading;

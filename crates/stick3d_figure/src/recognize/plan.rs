@@ -46,11 +46,13 @@ impl Plan {
                 template_length: figure.template[path[k]].distance(figure.template[path[k + 1]]),
             })
             .collect();
-        let bones_at = |joint: usize| figure.bones.iter().filter(|b| b.contains(&joint)).count();
         let mid_limb = (0..path.len())
-            .map(|k| k > 0 && !steps[k - 1].retrace && bones_at(path[k]) == 2)
+            .map(|k| k > 0 && !steps[k - 1].retrace && figure.bones_at(path[k]) == 2)
             .collect();
-        let branches = path.iter().map(|joint| bones_at(*joint) > 2).collect();
+        let branches = path
+            .iter()
+            .map(|joint| figure.bones_at(*joint) > 2)
+            .collect();
         let open = (0..path.len())
             .map(|k| {
                 (0..figure.joint_count())

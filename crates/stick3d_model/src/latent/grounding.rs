@@ -30,15 +30,7 @@ pub fn feet(figure: &Figure) -> Vec<usize> {
     let heights = || figure.template.iter().map(|point| point.y);
     let lowest = heights().fold(f32::INFINITY, f32::min);
     let highest = heights().fold(f32::NEG_INFINITY, f32::max);
-    let is_end = |joint: &usize| {
-        figure
-            .bones
-            .as_flattened()
-            .iter()
-            .filter(|b| *b == joint)
-            .count()
-            == 1
-    };
+    let is_end = |joint: &usize| figure.bones_at(*joint) == 1;
     let is_low = |joint: &usize| figure.template[*joint].y - lowest <= FOOT * (highest - lowest);
     (0..figure.joint_count())
         .filter(is_end)

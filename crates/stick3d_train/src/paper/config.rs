@@ -5,7 +5,7 @@ use stick3d_model::Architecture;
 use stick3d_model::architecture::{LATENT_LEN, NetworkSizes};
 
 use crate::device::ComputeDevice;
-use crate::training::{StageName, TrainError};
+use crate::training::TrainError;
 
 /// A set with fewer key meshes than this is as small as the paper's of horses (8, and 72 of the man).
 const FEW_MESHES: usize = 24;
@@ -109,16 +109,6 @@ impl PaperConfig {
         sizes.head.push(3 * vertex_count);
         sizes.relu_after_head = false;
         sizes
-    }
-
-    /// The stages with their names.
-    pub(super) fn stages(&self) -> [(StageName, usize); 3] {
-        let [a, b, c] = self.epochs;
-        [
-            (StageName::Autoencoder, a),
-            (StageName::Encoder2d, b),
-            (StageName::Joint, c),
-        ]
     }
 
     /// Checks that the parts make sense.

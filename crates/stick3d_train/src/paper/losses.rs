@@ -5,9 +5,7 @@ use stick3d_model::network::reparameterize;
 
 use super::networks::PaperAutoencoder;
 use super::{PaperConfig, PaperKind};
-
-/// Terms of one loss, for the log: name and value, unweighted.
-pub(super) type Terms = Vec<(&'static str, Tensor<1>)>;
+use crate::training::Terms;
 
 /// What an autoencoder's loss yields.
 pub(super) struct AutoencoderLoss {

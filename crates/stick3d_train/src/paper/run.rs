@@ -10,13 +10,13 @@ use rayon::prelude::*;
 use stick3d_model::Model;
 use stick3d_model::digest::sha256_hex;
 
-use super::losses::{Terms, autoencoder, equation_2};
+use super::losses::{autoencoder, equation_2};
 use super::networks::{PaperAutoencoder, PaperNetworks, PaperWeights};
 use super::{PaperConfig, PaperSet, Sample, Samples, export};
-use crate::dataset::{normal_pair, random, rounded};
+use crate::dataset::{normal_pair, random};
 use crate::training::adam::Adam;
-use crate::training::checkpoint::Checkpoint;
-use crate::training::{LossLog, LossRecord, Progress, StageName, TrainError, plot};
+use crate::training::stages::{Epoch, Staged};
+use crate::training::{LossLog, LossRecord, Progress, StageName, Terms, TrainError};
 
 /// Samples whose means are found at once.
 const CHUNK: usize = 128;
@@ -48,14 +48,8 @@ pub fn train_paper(
 ) -> Result<PaperTrained, TrainError> {
     config.validate()?;
     let run = Run::new(set, samples, config)?;
-    let path = run_folder.map(|folder| folder.join("checkpoint.safetensors"));
     let first = PaperWeights::initial(config, set.figure.input_len(), set.vertex_count());
-    let fresh = Checkpoint::start(first);
-    let checkpoint = match &path {
-        Some(path) if resume && path.exists() => Checkpoint::load(path, &run.identity, fresh)?,
-        _ => fresh,
-    };
-    let (networks, log) = run.stages(checkpoint, run_folder, progress)?;
+    let (networks, log) = run.run_stages(first, run_folder, resume, progress)?;
     let latents = run.latents(&networks)?;
     let data_hash = set.hash(samples);
     let weights = networks.to_weights()?;
@@ -76,8 +70,74 @@ struct Run<'a> {
     identity: String,
 }
 
-/// The state between two epochs.
-type State = Checkpoint<PaperWeights>;
+impl Staged for Run<'_> {
+    type Networks = PaperNetworks;
+    type Weights = PaperWeights;
+    /// What Encoder2D is to learn, where Encoder3D stands still.
+    type Fixed = Option<Tensor<2>>;
+
+    fn identity(&self) -> &str {
+        &self.identity
+    }
+
+    fn checkpoint_every(&self) -> usize {
+        self.config.checkpoint_every
+    }
+
+    fn epochs(&self) -> [usize; 3] {
+        self.config.epochs
+    }
+
+    fn networks(&self, weights: &PaperWeights) -> PaperNetworks {
+        PaperNetworks::new(weights, &self.device)
+    }
+
+    fn weights(&self, networks: &PaperNetworks) -> Result<PaperWeights, TrainError> {
+        networks.to_weights()
+    }
+
+    fn fixed(
+        &self,
+        stage: StageName,
+        networks: &PaperNetworks,
+    ) -> Result<Option<Tensor<2>>, TrainError> {
+        match stage {
+            StageName::Encoder2d => Ok(Some(self.means(&networks.vae)?)),
+            StageName::Autoencoder | StageName::Joint => Ok(None),
+        }
+    }
+
+    fn epoch(
+        &self,
+        mut networks: PaperNetworks,
+        at: Epoch,
+        means: &Option<Tensor<2>>,
+        adam: &mut Adam,
+        progress: &dyn Progress,
+    ) -> Result<(PaperNetworks, LossRecord), TrainError> {
+        // Every epoch of every stage has its own random numbers.
+        let epoch = ((at.stage as u64) << 32) | at.index as u64;
+        let batches = self.batches(epoch);
+        progress.begin(&at.label(), batches.len());
+        let mut record = at.record();
+        for (index, batch) in batches.iter().enumerate() {
+            let noise = self.noise(epoch, index, batch.len());
+            let (stepped, terms) =
+                self.step(networks, at.name, batch, noise, means.as_ref(), adam)?;
+            networks = stepped;
+            record.add(terms, batch.len() as f64 / self.samples.len() as f64)?;
+            progress.advance(1);
+        }
+        record.round();
+        Ok((networks, record))
+    }
+
+    fn stage_is_over(&self, stage: StageName, log: &LossLog, progress: &dyn Progress) {
+        if stage == StageName::Autoencoder {
+            self.say_whether_collapsed(log, progress);
+        }
+    }
+}
 
 impl<'a> Run<'a> {
     fn new(
@@ -95,92 +155,6 @@ impl<'a> Run<'a> {
             device: config.device.open()?,
             scale_m: set.scale_m(),
         })
-    }
-
-    fn stages(
-        &self,
-        mut state: State,
-        run_folder: Option<&Path>,
-        progress: &dyn Progress,
-    ) -> Result<(PaperNetworks, LossLog), TrainError> {
-        let mut networks = PaperNetworks::new(&state.weights, &self.device);
-        let stages = self.config.stages();
-        while let Some((name, epochs)) = stages.get(state.stage).copied() {
-            if state.epoch == 0 {
-                state.adam = Adam::default();
-            }
-            // Encoder3D stands still in this stage, and so does what Encoder2D is to learn.
-            let means = match name {
-                StageName::Encoder2d if state.epoch < epochs => Some(self.means(&networks.vae)?),
-                _ => None,
-            };
-            while state.epoch < epochs {
-                let (trained, record) =
-                    self.epoch(networks, name, epochs, means.as_ref(), &mut state, progress)?;
-                networks = trained;
-                progress.epoch(&record);
-                record.check()?;
-                state.log.records.push(record);
-                state.epoch += 1;
-                let stop = progress.should_stop();
-                let every = self.config.checkpoint_every.max(1);
-                let due = state.epoch.is_multiple_of(every) || state.epoch == epochs;
-                if let Some(folder) = run_folder.filter(|_| stop || due) {
-                    state.weights = networks.to_weights()?;
-                    self.leave(folder, &mut state)?;
-                }
-                if stop {
-                    return Err(TrainError::Stopped {
-                        epochs: state.log.records.len(),
-                    });
-                }
-            }
-            if name == StageName::Autoencoder {
-                self.say_whether_collapsed(&state.log, progress);
-            }
-            state.stage += 1;
-            state.epoch = 0;
-        }
-        Ok((networks, state.log))
-    }
-
-    /// Writes checkpoint, log and plot.
-    fn leave(&self, folder: &Path, state: &mut State) -> Result<(), TrainError> {
-        state.save(&folder.join("checkpoint.safetensors"), &self.identity)?;
-        plot::leave(&state.log, folder)
-    }
-
-    fn epoch(
-        &self,
-        mut networks: PaperNetworks,
-        name: StageName,
-        epochs: usize,
-        means: Option<&Tensor<2>>,
-        state: &mut State,
-        progress: &dyn Progress,
-    ) -> Result<(PaperNetworks, LossRecord), TrainError> {
-        // Every epoch of every stage has its own random numbers.
-        let epoch = ((state.stage as u64) << 32) | state.epoch as u64;
-        let batches = self.batches(epoch);
-        let what = format!("{} {}/{epochs}", name.label(), state.epoch + 1);
-        progress.begin(&what, batches.len());
-        let mut record = LossRecord {
-            stage: name,
-            epoch: state.epoch,
-            epochs,
-            loss: 0.0,
-            terms: vec![],
-        };
-        for (index, batch) in batches.iter().enumerate() {
-            let noise = self.noise(epoch, index, batch.len());
-            let (stepped, terms) =
-                self.step(networks, name, batch, noise, means, &mut state.adam)?;
-            networks = stepped;
-            record.add(terms, batch.len() as f64 / self.samples.len() as f64)?;
-            progress.advance(1);
-        }
-        record.round();
-        Ok((networks, record))
     }
 
     /// One step of one stage: which loss, and which networks it moves.
@@ -303,9 +277,14 @@ impl<'a> Run<'a> {
         Ok(self.tensor(rows, self.samples.len(), &self.device))
     }
 
+    /// The device where nothing is noted for differentiation.
+    fn tapeless_device(&self) -> Device {
+        self.device.clone().inner()
+    }
+
     /// The same on a plain array.
     fn body_latents(&self, vae: &PaperAutoencoder) -> Result<Vec<f32>, TrainError> {
-        let (encoder, device) = (vae.encoder3d.valid(), self.device.clone().inner());
+        let (encoder, device) = (vae.encoder3d.valid(), self.tapeless_device());
         let order: Vec<usize> = (0..self.samples.len()).collect();
         let mut latents = vec![];
         for chunk in order.chunks(CHUNK) {
@@ -318,7 +297,7 @@ impl<'a> Run<'a> {
     /// The latents of the training samples, from their bodies and from their sketches.
     fn latents(&self, networks: &PaperNetworks) -> Result<Vec<Vec<f32>>, TrainError> {
         let order: Vec<usize> = (0..self.samples.len()).collect();
-        let device = self.device.clone().inner();
+        let device = self.tapeless_device();
         let inputs = self.tensor(self.inputs_of(&order), order.len(), &device);
         let mut latents = self.body_latents(&networks.vae)?;
         latents.extend(numbers(networks.encoder2d.valid().forward(inputs))?);
@@ -365,31 +344,4 @@ fn numbers(tensor: Tensor<2>) -> Result<Vec<f32>, TrainError> {
     let fault = |e: &dyn std::fmt::Debug| TrainError::Backend(format!("{e:?}"));
     let data = tensor.try_into_data().map_err(|e| fault(&e))?;
     data.try_to_vec::<f32>().map_err(|e| fault(&e))
-}
-
-impl LossRecord {
-    /// Adds a batch's terms, `share` of the epoch.
-    fn add(&mut self, terms: Terms, share: f64) -> Result<(), TrainError> {
-        for (name, value) in crate::training::values(terms)? {
-            let value = value * share;
-            match self.terms.iter_mut().find(|(known, _)| known == name) {
-                _ if name == "loss" => self.loss += value,
-                Some((_, sum)) => *sum += value,
-                None => self.terms.push((name.to_owned(), value)),
-            }
-        }
-        Ok(())
-    }
-
-    fn round(&mut self) {
-        self.loss = rounded(self.loss);
-        self.terms
-            .iter_mut()
-            .for_each(|(_, value)| *value = rounded(*value));
-    }
-
-    fn term(&self, name: &str) -> Option<f64> {
-        let found = self.terms.iter().find(|(known, _)| known == name);
-        found.map(|(_, value)| *value)
-    }
 }

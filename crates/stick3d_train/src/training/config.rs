@@ -5,7 +5,7 @@ use stick3d_figure::figure::Figure;
 use stick3d_model::Architecture;
 use stick3d_model::architecture::LATENT_LEN;
 
-use super::{StageName, TrainError};
+use super::TrainError;
 use crate::dataset::{Augmentation, BasisConfig, Rotations};
 use crate::device::ComputeDevice;
 use crate::size::relative_size;
@@ -140,7 +140,7 @@ impl TrainConfig {
                     learning_rate: 1e-3,
                 },
                 StageConfig {
-                    epochs: 32,
+                    epochs: 20,
                     learning_rate: 1e-3,
                 },
             ],
@@ -205,15 +205,5 @@ impl TrainConfig {
             encoder2d,
             hypotheses: self.hypotheses,
         }
-    }
-
-    /// The stages with their names.
-    pub(crate) fn named_stages(&self) -> [(StageName, StageConfig); 3] {
-        let [a, b, c] = self.stages;
-        [
-            (StageName::Autoencoder, a),
-            (StageName::Encoder2d, b),
-            (StageName::Joint, c),
-        ]
     }
 }

@@ -4,7 +4,9 @@ use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
+use super::losses::{Terms, values};
 use super::{StageName, TrainError};
+use crate::dataset::rounded;
 
 /// The losses of one epoch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,6 +34,33 @@ impl LossRecord {
             epoch: self.epoch,
             loss: self.loss,
         })
+    }
+
+    /// Adds a batch's terms, `share` of the epoch.
+    pub(crate) fn add(&mut self, terms: Terms, share: f64) -> Result<(), TrainError> {
+        for (name, value) in values(terms)? {
+            let value = value * share;
+            match self.terms.iter_mut().find(|(known, _)| known == name) {
+                _ if name == "loss" => self.loss += value,
+                Some((_, sum)) => *sum += value,
+                None => self.terms.push((name.to_owned(), value)),
+            }
+        }
+        Ok(())
+    }
+
+    /// To the digits that are told.
+    pub(crate) fn round(&mut self) {
+        self.loss = rounded(self.loss);
+        self.terms
+            .iter_mut()
+            .for_each(|(_, value)| *value = rounded(*value));
+    }
+
+    /// A term by its name.
+    pub(crate) fn term(&self, name: &str) -> Option<f64> {
+        let found = self.terms.iter().find(|(known, _)| known == name);
+        found.map(|(_, value)| *value)
     }
 }
 

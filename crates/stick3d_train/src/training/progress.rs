@@ -16,6 +16,9 @@ pub enum StageName {
 }
 
 impl StageName {
+    /// In their order.
+    pub(crate) const ALL: [Self; 3] = [Self::Autoencoder, Self::Encoder2d, Self::Joint];
+
     /// A short name for logs and progress bars.
     #[must_use]
     pub fn label(self) -> &'static str {

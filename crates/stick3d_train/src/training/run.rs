@@ -9,17 +9,17 @@ use stick3d_model::Model;
 use stick3d_model::digest::sha256_hex;
 
 use super::adam::Adam;
-use super::checkpoint::Checkpoint;
 use super::export;
 use super::init::initial_weights;
 use super::log::{LossLog, LossRecord};
-use super::losses::{CodeScale, Loss, Losses, Tensors, Terms, values};
+use super::losses::{CodeScale, Loss, Losses, Tensors, Terms};
 use super::material::{Material, MeshTrainInput, TrainInput};
 use super::networks::{NetworkWeights, Networks};
 use super::sketch_loss::Relaxation;
+use super::stages::{Epoch, Staged};
 use super::tape::Tape;
-use super::{Progress, StageConfig, StageName, TrainConfig, TrainError, plot};
-use crate::dataset::{BasisFit, Batcher, BodySet, random, rounded};
+use super::{Progress, StageName, TrainConfig, TrainError};
+use crate::dataset::{BasisFit, Batcher, BodySet, random};
 
 /// What a run yields.
 #[derive(Debug, Clone)]
@@ -73,13 +73,9 @@ fn run(
     progress: &dyn Progress,
 ) -> Result<Trained, TrainError> {
     let run = Run::new(material, config)?;
-    let path = run_folder.map(|folder| folder.join("checkpoint.safetensors"));
-    let fresh = || Checkpoint::start(run.initial_weights());
-    let checkpoint = match &path {
-        Some(path) if resume && path.exists() => Checkpoint::load(path, &run.identity, fresh())?,
-        _ => fresh(),
-    };
-    let (weights, log) = run.stages(checkpoint, run_folder, progress)?;
+    let first = run.initial_weights();
+    let (networks, log) = run.run_stages(first, run_folder, resume, progress)?;
+    let weights = networks.to_weights()?;
     let model = export::model(config, &run, weights)?;
     Ok(Trained {
         model,
@@ -98,6 +94,71 @@ pub(super) struct Run<'a> {
     losses: Losses,
     /// Tells checkpoints of this run from others: hash of configuration and data.
     identity: String,
+}
+
+impl Staged for Run<'_> {
+    type Networks = Networks;
+    type Weights = NetworkWeights;
+    type Fixed = ();
+
+    fn identity(&self) -> &str {
+        &self.identity
+    }
+
+    fn checkpoint_every(&self) -> usize {
+        self.config.checkpoint_every
+    }
+
+    fn epochs(&self) -> [usize; 3] {
+        self.config.stages.map(|stage| stage.epochs)
+    }
+
+    fn networks(&self, weights: &NetworkWeights) -> Networks {
+        Networks::new(weights, &self.device)
+    }
+
+    fn weights(&self, networks: &Networks) -> Result<NetworkWeights, TrainError> {
+        networks.to_weights()
+    }
+
+    fn fixed(&self, _stage: StageName, _networks: &Networks) -> Result<(), TrainError> {
+        Ok(())
+    }
+
+    fn epoch(
+        &self,
+        mut networks: Networks,
+        at: Epoch,
+        _fixed: &(),
+        adam: &mut Adam,
+        progress: &dyn Progress,
+    ) -> Result<(Networks, LossRecord), TrainError> {
+        let batcher = self.batcher();
+        // Every epoch of every stage has its own random numbers.
+        let epoch = ((at.stage as u64) << 16) | at.index as u64;
+        let order = batcher.order(epoch);
+        let count = batcher.batches_per_epoch();
+        progress.begin(&at.label(), count);
+        let mut record = at.record();
+        for index in 0..count {
+            let batch = batcher.batch(epoch, index, &order)?;
+            let noise = batcher.noise(epoch, index, batch.len * self.config.latent_len);
+            let tensors = self
+                .losses
+                .tensors(&batch, noise, &self.scale, &self.device)?;
+            let (step, steps) = (at.index * count + index, at.count * count);
+            let rate = self.config.stages[at.stage].learning_rate * schedule(step, steps);
+            let done = step as f64 / steps as f64;
+            let relaxation = self.relaxation(at.name, (epoch, index), done, batch.len);
+            let (stepped, terms) =
+                self.step(networks, at.name, &tensors, &relaxation, adam, rate)?;
+            networks = stepped;
+            record.add(terms, 1.0 / count as f64)?;
+            progress.advance(1);
+        }
+        record.round();
+        Ok((networks, record))
+    }
 }
 
 impl<'a> Run<'a> {
@@ -147,106 +208,6 @@ impl<'a> Run<'a> {
             batch_size: self.config.batch_size,
             seed: self.config.seed,
         }
-    }
-
-    fn stages(
-        &self,
-        mut state: Checkpoint,
-        run_folder: Option<&Path>,
-        progress: &dyn Progress,
-    ) -> Result<(NetworkWeights, LossLog), TrainError> {
-        let mut networks = Networks::new(&state.weights, &self.device);
-        let stages = self.config.named_stages();
-        while let Some((name, stage)) = stages.get(state.stage) {
-            if state.epoch == 0 {
-                state.adam = Adam::default();
-            }
-            while state.epoch < stage.epochs {
-                let (trained, record) =
-                    self.epoch(networks, *name, *stage, &mut state, progress)?;
-                networks = trained;
-                progress.epoch(&record);
-                record.check()?;
-                state.log.records.push(record);
-                state.epoch += 1;
-                let stop = progress.should_stop();
-                let due = state
-                    .epoch
-                    .is_multiple_of(self.config.checkpoint_every.max(1))
-                    || state.epoch == stage.epochs;
-                if let Some(folder) = run_folder.filter(|_| stop || due) {
-                    state.weights = networks.to_weights()?;
-                    self.leave(folder, &mut state)?;
-                }
-                if stop {
-                    return Err(TrainError::Stopped {
-                        epochs: state.log.records.len(),
-                    });
-                }
-            }
-            state.stage += 1;
-            state.epoch = 0;
-        }
-        Ok((networks.to_weights()?, state.log))
-    }
-
-    /// Writes checkpoint, log and plot.
-    fn leave(&self, folder: &Path, state: &mut Checkpoint) -> Result<(), TrainError> {
-        state.save(&folder.join("checkpoint.safetensors"), &self.identity)?;
-        plot::leave(&state.log, folder)
-    }
-
-    fn epoch(
-        &self,
-        mut networks: Networks,
-        name: StageName,
-        stage: StageConfig,
-        state: &mut Checkpoint,
-        progress: &dyn Progress,
-    ) -> Result<(Networks, LossRecord), TrainError> {
-        let batcher = self.batcher();
-        // Every epoch of every stage has its own random numbers.
-        let epoch = ((state.stage as u64) << 16) | state.epoch as u64;
-        let order = batcher.order(epoch);
-        let count = batcher.batches_per_epoch();
-        progress.begin(
-            &format!("{} {}/{}", name.label(), state.epoch + 1, stage.epochs),
-            count,
-        );
-        let mut sums: Vec<(String, f64)> = vec![];
-        let mut loss_sum = 0.0;
-        for index in 0..count {
-            let batch = batcher.batch(epoch, index, &order)?;
-            let noise = batcher.noise(epoch, index, batch.len * self.config.latent_len);
-            let tensors = self
-                .losses
-                .tensors(&batch, noise, &self.scale, &self.device)?;
-            let step = state.epoch * count + index;
-            let rate = stage.learning_rate * schedule(step, stage.epochs * count);
-            let done = step as f64 / (stage.epochs * count) as f64;
-            let relaxation = self.relaxation(name, (epoch, index), done, batch.len);
-            let (stepped, terms) =
-                self.step(networks, name, &tensors, &relaxation, &mut state.adam, rate)?;
-            networks = stepped;
-            for (term, value) in values(terms)? {
-                match sums.iter_mut().find(|(known, _)| known == term) {
-                    _ if term == "loss" => loss_sum += value,
-                    Some((_, sum)) => *sum += value,
-                    None => sums.push((term.to_owned(), value)),
-                }
-            }
-            progress.advance(1);
-        }
-        sums.iter_mut()
-            .for_each(|(_, sum)| *sum = rounded(*sum / count as f64));
-        let record = LossRecord {
-            stage: name,
-            epoch: state.epoch,
-            epochs: stage.epochs,
-            loss: rounded(loss_sum / count as f64),
-            terms: sums,
-        };
-        Ok((networks, record))
     }
 
     /// What the hypotheses that are not the nearest learn in a step. In the beginning much, so that none is left behind.
