@@ -1,6 +1,6 @@
 //! Where a moving figure stands: on the ground, on the feet that are down.
 //!
-//! Decoded bodies are centred on the root joint. What moves them over the ground is that a foot which is down stays
+//! Decoded bodies are centred on the root joint. What moves them over the ground is that what treads on the ground stays
 //! where it is: the root moves against it. A foot is down between two keys if it is down in both. A runner whose feet are all
 //! up flies; all others have their lowest point on the ground.
 
@@ -13,7 +13,7 @@ use stick3d_figure::figure::Figure;
 use super::path::LatentPath;
 use super::{PathError, Repeat};
 use crate::infer::Inference;
-use contact::{Interval, Stance, Step, horizontal_velocities};
+use contact::{Interval, Stance, horizontal_velocities};
 
 /// An end of a bone of the template this near to the ground, as a share of the template's height, is a foot.
 const FOOT: f32 = 0.15;
@@ -62,7 +62,7 @@ impl GroundTrack {
         let mut latent = vec![0.0; path.latent_len()];
         for time_s in &times_s {
             path.write_at(path.place(*time_s), &mut latent);
-            steps.push(Step::of(&latent, inference, &feet, &mut positions)?);
+            steps.push(stance.step(&latent, inference, &mut positions)?);
         }
         let is_loop = matches!(path.repeat(), Repeat::Loop { .. });
         let carried = horizontal_velocities(&steps, &times_s, &intervals, &stance);

@@ -6,10 +6,14 @@ use stick3d_figure::sketch::Sketch;
 use crate::infer::Inference;
 use crate::latent::PathError;
 
-/// A foot is down whose height above where it is at rest is at most this share of the body's height.
+/// A foot is down whose sole is nowhere lower than this share of the body's height above the body's lowest point.
 const DOWN: f32 = 0.045;
-/// A foot has landed that is this near to where it is at rest, as a share of the body's height.
+/// A foot has landed whose sole is so near to the ground.
 const LANDED: f32 = 0.02;
+/// A point of a sole carries that is at most so much higher than the sole's lowest one, as a share of the body's height.
+const TREAD: f32 = 0.01;
+/// At so many points, about, a sole is looked at.
+const SOLE_POINTS: usize = 40;
 /// Of several feet down, those that are higher than the lowest by this share of the body's height carry nothing.
 const BESIDE: f32 = 0.015;
 /// Two feet that slip against each other by more than this share of the body's height cannot both stay.
@@ -26,38 +30,22 @@ pub(super) struct Interval {
 /// What is known of a body at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Step {
-    pub(super) feet: Vec<Vec3>,
+    /// Points of each foot's sole, metres.
+    pub(super) soles: Vec<Vec<Vec3>>,
     pub(super) lowest_m: f32,
 }
 
-impl Step {
-    pub(super) fn of(
-        latent: &[f32],
-        inference: &mut Inference,
-        feet: &[usize],
-        positions: &mut [[f32; 3]],
-    ) -> Result<Self, PathError> {
-        let mut joints = vec![Vec3::ZERO; inference.figure().joint_count()];
-        inference.joints(latent, &mut joints)?;
-        inference.decode_positions(latent, positions)?;
-        let heights = positions.iter().map(|position| position[1]);
-        Ok(Self {
-            feet: feet.iter().map(|joint| joints[*joint]).collect(),
-            lowest_m: heights.fold(f32::INFINITY, f32::min),
-        })
-    }
-}
-
-/// How the feet stand when the figure is at rest.
+/// What figures stand on.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Stance {
-    /// Of the foot's joint above the ground, metres.
-    pub(super) rest_m: Vec<f32>,
+    /// Per foot vertices of its sole.
+    pub(super) soles: Vec<Vec<usize>>,
     /// Of the body, metres.
     pub(super) height_m: f32,
 }
 
 impl Stance {
+    /// As the template stands: of what is lower than a foot's joint all that is nearer to it than to others.
     pub(super) fn of_template(
         inference: &mut Inference,
         feet: &[usize],
@@ -66,27 +54,55 @@ impl Stance {
         let sketch = Sketch::template(inference.figure());
         let mut latent = vec![0.0; inference.latent_len()];
         inference.encode(&sketch, &mut latent)?;
-        let step = Step::of(&latent, inference, feet, positions)?;
         let mut joints = vec![Vec3::ZERO; inference.figure().joint_count()];
         inference.joints(&latent, &mut joints)?;
+        inference.decode_positions(&latent, positions)?;
+        let mut soles = vec![vec![]; feet.len()];
+        for (vertex, position) in positions.iter().enumerate() {
+            let position = Vec3::from(*position);
+            let away = |foot: &usize| flat(joints[feet[*foot]] - position).length_squared();
+            let nearest = (0..feet.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+            if let Some(foot) = nearest.filter(|foot| position.y < joints[feet[*foot]].y) {
+                soles[foot].push(vertex);
+            }
+        }
+        for sole in &mut soles {
+            let apart = sole.len().div_ceil(SOLE_POINTS).max(1);
+            *sole = sole.iter().copied().step_by(apart).collect();
+        }
         let top = joints.iter().map(|j| j.y).fold(f32::NEG_INFINITY, f32::max);
         Ok(Self {
-            rest_m: step
-                .feet
-                .iter()
-                .map(|foot| foot.y - step.lowest_m)
-                .collect(),
-            height_m: (top - step.lowest_m).max(f32::MIN_POSITIVE),
+            soles,
+            height_m: (top - lowest(positions)).max(f32::MIN_POSITIVE),
         })
     }
 
-    /// How far each foot is above where it is at rest, as a share of the body's height.
-    fn heights<'a>(&'a self, step: &'a Step) -> impl Iterator<Item = f32> + 'a {
-        step.feet
-            .iter()
-            .zip(&self.rest_m)
-            .map(|(foot, rest_m)| (foot.y - step.lowest_m - rest_m) / self.height_m)
+    /// The body of a latent.
+    pub(super) fn step(
+        &self,
+        latent: &[f32],
+        inference: &mut Inference,
+        positions: &mut [[f32; 3]],
+    ) -> Result<Step, PathError> {
+        inference.decode_positions(latent, positions)?;
+        let points = |sole: &Vec<usize>| sole.iter().map(|v| Vec3::from(positions[*v])).collect();
+        Ok(Step {
+            soles: self.soles.iter().map(points).collect(),
+            lowest_m: lowest(positions),
+        })
     }
+
+    /// How high the lowest point of each sole is above the body's, as a share of the body's height.
+    fn heights<'a>(&'a self, step: &'a Step) -> impl Iterator<Item = f32> + 'a {
+        let lowest = |sole: &Vec<Vec3>| sole.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+        let soles = step.soles.iter();
+        soles.map(move |sole| (lowest(sole) - step.lowest_m) / self.height_m)
+    }
+}
+
+fn lowest(positions: &[[f32; 3]]) -> f32 {
+    let heights = positions.iter().map(|position| position[1]);
+    heights.fold(f32::INFINITY, f32::min)
 }
 
 /// How fast the root moves over the ground in every step, metres a second, x and z; `None` where no foot carries it.
@@ -132,7 +148,7 @@ fn landing_feet(steps: &[Step], interval: Interval, stance: &Stance, step: usize
     };
     let since = &steps[interval.first_step..=step + 1];
     let until = &steps[step..=interval.last_step];
-    let feet = 0..stance.rest_m.len();
+    let feet = 0..stance.soles.len();
     feet.filter(|foot| low(since, *foot) || low(until, *foot))
         .collect()
 }
@@ -144,7 +160,9 @@ pub(super) fn planted_feet(steps: &[Step], interval: Interval, stance: &Stance) 
     let [from, to] = interval.keys.map(down);
     let mut feet: Vec<usize> = (0..from.len()).filter(|f| from[*f] && to[*f]).collect();
     let (first, last) = (&steps[interval.first_step], &steps[interval.last_step]);
-    let apart = |step: &Step, a: usize, b: usize| flat(step.feet[a] - step.feet[b]);
+    let middle = |sole: &[Vec3]| sole.iter().sum::<Vec3>() / sole.len().max(1) as f32;
+    let apart =
+        |step: &Step, a: usize, b: usize| flat(middle(&step.soles[a]) - middle(&step.soles[b]));
     let slips = feet.iter().any(|&foot| {
         apart(first, feet[0], foot).distance(apart(last, feet[0], foot)) > SLIP * stance.height_m
     });
@@ -180,9 +198,20 @@ fn slip(from: &Step, to: &Step, planted: &[usize], stance: &Stance) -> Option<Ve
     }
     let (mut sum, mut weights) = (Vec2::ZERO, 0.0);
     for &foot in planted {
-        let weight = (1.0 - (heights[foot] - lowest) / BESIDE).max(0.0).powi(2);
-        sum += weight * flat(to.feet[foot] - from.feet[foot]);
-        weights += weight;
+        let beside = (1.0 - (heights[foot] - lowest) / BESIDE).max(0.0).powi(2);
+        let points = from.soles[foot].iter().zip(&to.soles[foot]);
+        let height_m = |(a, b): &(&Vec3, &Vec3)| 0.5 * (a.y + b.y);
+        let sole_m = points
+            .clone()
+            .map(|pair| height_m(&pair))
+            .fold(f32::INFINITY, f32::min);
+        for pair in points {
+            // What treads on the ground stays; a heel that lifts moves on over the ball of the foot.
+            let above = (height_m(&pair) - sole_m) / (TREAD * stance.height_m);
+            let weight = beside * (1.0 - above).max(0.0).powi(2);
+            sum += weight * flat(*pair.1 - *pair.0);
+            weights += weight;
+        }
     }
     (weights > 0.0).then(|| sum / weights)
 }

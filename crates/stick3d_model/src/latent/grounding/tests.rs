@@ -2,7 +2,7 @@
 
 use stick3d_figure::sketch::Sketch;
 
-use super::contact::{flat, planted_feet};
+use super::contact::{Step, flat, planted_feet};
 use super::flight::{filled, lifts};
 use super::*;
 use crate::Model;
@@ -10,14 +10,17 @@ use crate::latent::{Easing, Interpolation, LatentKey, Motion, MotionSettings, Re
 
 /// A body of height 1 whose feet are where they are told to be.
 fn step(feet: [[f32; 3]; 2]) -> Step {
-    let feet: Vec<Vec3> = feet.map(Vec3::from).to_vec();
+    let feet = feet.map(Vec3::from);
     let lowest_m = feet.iter().map(|foot| foot.y).fold(f32::INFINITY, f32::min);
-    Step { feet, lowest_m }
+    Step {
+        soles: feet.map(|foot| vec![foot]).to_vec(),
+        lowest_m,
+    }
 }
 
 fn stance() -> Stance {
     Stance {
-        rest_m: vec![0.0; 2],
+        soles: vec![vec![]; 2],
         height_m: 1.0,
     }
 }
@@ -77,7 +80,7 @@ fn a_walk_goes_forward_on_planted_feet() {
             < 0.06
     );
     // The planted foot does not move.
-    let foot = |time_s: f32| walk(time_s).feet[0] + track.translation(time_s, 0.0);
+    let foot = |time_s: f32| walk(time_s).soles[0][0] + track.translation(time_s, 0.0);
     for i in 0..40 {
         let time_s = 0.012 * i as f32;
         assert!(
@@ -268,19 +271,37 @@ fn the_planted_foot_of_the_man_stays() {
     let right = human.joint_index("foot_r").unwrap();
     let mut latent = vec![0.0; man.latent_len()];
     let mut joints = vec![Vec3::ZERO; human.joint_count()];
-    let mut foot = |time_s: f32| {
+    let mut positions = vec![[0.0; 3]; man.vertex_count()];
+    let mut body = |time_s: f32| {
         motion.sample_into(time_s, &mut latent).unwrap();
         man.joints(&latent, &mut joints).unwrap();
-        joints[right] + motion.root_translation(time_s).unwrap()
+        man.decode_positions(&latent, &mut positions).unwrap();
+        let root = motion.root_translation(time_s).unwrap();
+        let points: Vec<Vec3> = positions.iter().map(|p| Vec3::from(*p) + root).collect();
+        (joints[right] + root, points)
     };
     // From the passing pose to the next contact the right foot alone carries him.
-    let mut slid = 0.0;
-    for frame in 16..28 {
-        let (a, b) = (foot(frame as f32 / 60.0), foot((frame + 1) as f32 / 60.0));
-        slid += flat(b - a).length();
+    let (mut slid, mut trod) = (0.0, 0.0);
+    let (mut ankle, mut points) = body(16.0 / 60.0);
+    for frame in 17..=28 {
+        let (next_ankle, next) = body(frame as f32 / 60.0);
+        slid += flat(next_ankle - ankle).length();
+        // What is on the ground below that ankle, or before it.
+        let treads = points
+            .iter()
+            .zip(&next)
+            .filter(|(a, b)| a.y.max(b.y) < 0.01 && flat(**a - ankle).length() < 0.3);
+        let (mut sum, mut count) = (Vec2::ZERO, 0.0);
+        for (a, b) in treads {
+            sum += flat(*b - *a);
+            count += 1.0;
+        }
+        trod += (sum / count).length();
+        (ankle, points) = (next_ankle, next);
     }
-    // The body passes some 30 cm over it meanwhile.
+    // The body passes some 30 cm over it meanwhile; the ankle goes on over the ball of the foot.
     assert!(slid < 0.07, "{slid} m");
+    assert!(trod < 0.02, "{trod} m");
 }
 
 #[test]
