@@ -6,7 +6,8 @@ use stick3d_figure::figure::Limb;
 use super::gaussian::Gaussian;
 use super::marks::JointMark;
 use super::noise;
-use super::refine::{Body, Drawn, Refiner};
+use super::proposal::{Body, Drawn};
+use super::refine::Refiner;
 use crate::kernels;
 
 /// How often the body is pulled and looked at again.
@@ -47,7 +48,7 @@ impl Refiner {
                     f64::from(off + kernels::dot(row(i), &offset))
                 })
                 .collect();
-            let nearness = (NEARNESS * self.skeleton.size_m()).powi(2);
+            let nearness = (NEARNESS * self.measurement.skeleton.size_m()).powi(2);
             for (at, entry) in gaussian.covariance().iter_mut().enumerate() {
                 let (i, j) = (at / size, at % size);
                 *entry = f64::from(REACH * REACH * kernels::dot(row(i), row(j)));
@@ -69,7 +70,7 @@ impl Refiner {
                     *offset = from + share * (to - from);
                 }
                 pulled.copy_from_slice(start);
-                kernels::accumulate(&offset, &self.ways, pulled);
+                kernels::accumulate(&offset, &self.measurement.ways, pulled);
                 write_joints(body, pulled, &mut joints);
                 let off = mean_square(&joints, goals);
                 let is_nearer = off < least;
@@ -78,7 +79,7 @@ impl Refiner {
             });
             if nearer.is_none() {
                 pulled.copy_from_slice(start);
-                kernels::accumulate(&from, &self.ways, pulled);
+                kernels::accumulate(&from, &self.measurement.ways, pulled);
                 break;
             }
         }

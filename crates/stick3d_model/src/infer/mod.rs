@@ -6,8 +6,10 @@ mod gaussian;
 mod hypotheses;
 mod joint_map;
 mod marks;
+mod measurement;
 mod noise;
 mod perceptron;
+mod proposal;
 mod refine;
 mod slope;
 
@@ -23,7 +25,8 @@ use thiserror::Error;
 
 use self::joint_map::JointMap;
 use self::perceptron::Perceptron;
-use self::refine::{Body, Drawn, Refiner};
+use self::proposal::{Body, Drawn};
+use self::refine::Refiner;
 use crate::file::ModelError;
 use crate::final_layer::{FinalLayer, FinalScratch};
 use crate::latent::{LongestEdges, Probe, Trust};

@@ -18,20 +18,28 @@ pub(super) struct Noise {
     pub(super) trust: f64,
 }
 
-/// The drawings that are told apart, from exact to crooked.
-pub(super) const LEVELS: [Noise; 6] = {
-    const fn noise(joint: f64, bone: f64, trust: f64) -> Noise {
-        Noise { joint, bone, trust }
-    }
-    [
-        noise(0.005, 0.01, 0.8),
-        noise(0.008, 0.10, 0.1),
-        noise(0.014, 0.03, 0.1),
-        noise(0.014, 0.12, 0.1),
-        noise(0.025, 0.05, 0.1),
-        noise(0.025, 0.16, 0.1),
-    ]
-};
+const fn noise(joint: f64, bone: f64, trust: f64) -> Noise {
+    Noise { joint, bone, trust }
+}
+
+/// An exact drawing.
+pub(super) const EXACT: Noise = noise(0.005, 0.01, 0.7);
+
+/// The crooked drawings that are told apart.
+pub(super) const CROOKED: [Noise; 5] = [
+    noise(0.008, 0.10, 0.1),
+    noise(0.014, 0.03, 0.1),
+    noise(0.014, 0.12, 0.1),
+    noise(0.025, 0.05, 0.1),
+    noise(0.025, 0.16, 0.1),
+];
+
+/// How likely a drawing is exact, from the logarithms of how likely it is exactly and crookedly drawn.
+pub(super) fn exactness(exact: f64, crooked: f64) -> f64 {
+    /// As proposals are not normally distributed, the difference is too sure.
+    const SURE: f64 = 0.5;
+    1.0 / (1.0 + (-SURE * (exact - crooked)).exp())
+}
 
 /// A place anywhere: standard deviation, shares of the figure's size.
 const PLACE: f64 = 1.0;
@@ -120,7 +128,7 @@ impl Skeleton {
         let share = match mark {
             JointMark::Drawn => noise.joint,
             JointMark::Guessed => ANYWHERE,
-            JointMark::Pinned => LEVELS[0].joint.min(noise.joint),
+            JointMark::Pinned => EXACT.joint,
         };
         (share * self.size_m).powi(2)
     }

@@ -18,11 +18,10 @@ pub(super) struct Slopes {
     /// How many ways there are.
     rank: usize,
     arms: Vec<Vec3>,
-    /// Derivatives by the code: one `[coefficient_len]` for each of x, y and z.
+    /// Derivatives of one joint by the code: one `[coefficient_len]` for each of x, y and z.
     by_code: [Vec<f32>; 3],
-    /// Derivatives of two coordinates by the outputs of the layers.
-    by_output: Vec<[Vec<f32>; 2]>,
-    unused: Vec<f32>,
+    /// Derivatives by the outputs of each layer, `[joint][axes][output]`.
+    by_output: Vec<Vec<f32>>,
 }
 
 impl Slopes {
@@ -55,12 +54,7 @@ impl Slopes {
             rank,
             arms: vec![Vec3::ZERO; turning],
             by_code: [(); 3].map(|()| vec![0.0; coefficient_len]),
-            by_output: head
-                .layers
-                .iter()
-                .map(|layer| [(); 2].map(|()| vec![0.0; layer.output_len]))
-                .collect(),
-            unused: vec![],
+            by_output: vec![vec![]; head.layers.len()],
         }
     }
 
@@ -84,7 +78,10 @@ impl Slopes {
         slopes: &mut [f32],
     ) {
         let code = head.output();
-        for (joint, row) in rows.rows.chunks_exact(rows.rank).enumerate() {
+        let width = code.len();
+        let last = self.by_output.len() - 1;
+        self.by_output[last].clear();
+        for row in rows.rows.chunks_exact(rows.rank) {
             let [x, y, z] = &mut self.by_code;
             match layer.rotations() {
                 Some(rotations) => rotations.slopes(code, features, row, &mut self.arms, [x, y, z]),
@@ -95,53 +92,42 @@ impl Slopes {
                     }
                 }
             }
-            let out = &mut slopes[joint * axes * self.rank..][..axes * self.rank];
-            let (along_x, rest) = out.split_at_mut(self.rank);
-            let (along_y, along_z) = rest.split_at_mut(self.rank);
-            self.back(head, [0, 1], [along_x, along_y]);
-            if axes == 3 {
-                // There is no fourth to go with it.
-                self.unused.resize(self.rank, 0.0);
-                let mut unused = std::mem::take(&mut self.unused);
-                self.back(head, [2, 2], [along_z, &mut unused]);
-                self.unused = unused;
+            for slope in &self.by_code[..axes] {
+                self.by_output[last].extend_from_slice(&slope[..width]);
             }
         }
+        self.back(head, slopes);
     }
 
-    /// From the derivatives by the code to those along the ways, for two coordinates at once.
-    fn back(&mut self, head: &Perceptron, axes: [usize; 2], outs: [&mut [f32]; 2]) {
-        let last = self.by_output.len() - 1;
-        for (by_output, axis) in self.by_output[last].iter_mut().zip(axes) {
-            by_output.copy_from_slice(&self.by_code[axis]);
-        }
-        for index in (0..=last).rev() {
+    /// From the derivatives by the code to those along the ways.
+    fn back(&mut self, head: &Perceptron, slopes: &mut [f32]) {
+        let count = slopes.len() / self.rank.max(1);
+        for index in (0..self.by_output.len()).rev() {
+            let (before, after) = self.by_output.split_at_mut(index);
+            let slopes_after = &mut after[0];
+            let width = head.value(index).len();
             if head.weights().has_relu_after(index) {
-                for slopes in &mut self.by_output[index] {
-                    for (slope, value) in slopes.iter_mut().zip(head.value(index)) {
+                for row in slopes_after.chunks_exact_mut(width) {
+                    for (slope, value) in row.iter_mut().zip(head.value(index)) {
                         if *value <= 0.0 {
                             *slope = 0.0;
                         }
                     }
                 }
             }
-            if index > 0 {
-                let (before, after) = self.by_output.split_at_mut(index);
-                let [a, b] = &mut before[index - 1];
-                a.fill(0.0);
-                b.fill(0.0);
-                let from = [after[0][0].as_slice(), after[0][1].as_slice()];
-                kernels::accumulate_pair(from, &self.transposed[index - 1], [a, b]);
+            match before.last_mut() {
+                Some(slopes_before) => {
+                    slopes_before.clear();
+                    slopes_before.resize(count * head.value(index - 1).len(), 0.0);
+                    let matrix = &self.transposed[index - 1];
+                    kernels::accumulate_several(slopes_after, width, matrix, slopes_before);
+                }
+                None => {
+                    slopes.fill(0.0);
+                    kernels::accumulate_several(slopes_after, width, &self.first, slopes);
+                }
             }
         }
-        let [a, b] = outs;
-        a.fill(0.0);
-        b.fill(0.0);
-        let from = [
-            self.by_output[0][0].as_slice(),
-            self.by_output[0][1].as_slice(),
-        ];
-        kernels::accumulate_pair(from, &self.first, [a, b]);
     }
 }
 
