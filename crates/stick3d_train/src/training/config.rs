@@ -140,7 +140,7 @@ impl TrainConfig {
                     learning_rate: 1e-3,
                 },
                 StageConfig {
-                    epochs: 20,
+                    epochs: 32,
                     learning_rate: 1e-3,
                 },
             ],
