@@ -246,8 +246,12 @@ impl SketchDrawing {
         if !is_fresh || self.order() == DrawingOrder::Guided || way.length_px() < SLIP {
             return false;
         }
-        let reading = self.read(&fresh.strokes, &fresh.exchanged);
-        reading.progress.complete && completes(&self.figure, &fresh.strokes, way)
+        // A drawing that was taken for finished by Enter has guessed limbs, which are there to be dragged.
+        completes(&self.figure, &fresh.strokes, way)
+            && self
+                .read(&fresh.strokes, &fresh.exchanged)
+                .progress
+                .complete
     }
 
     /// A slip of the pen on a bone of a finished sketch is a click on its limb.
