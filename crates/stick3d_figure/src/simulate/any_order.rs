@@ -37,6 +37,16 @@ impl Habits {
             },
         }
     }
+
+    /// One stroke for each bone.
+    pub fn bone_by_bone(figure: &Figure) -> Self {
+        Self {
+            go_on: 0.0,
+            cut: 0.0,
+            loop_head: 0.0,
+            ..Self::of(figure)
+        }
+    }
 }
 
 /// How far bones of a flat pose turn from the template, degrees either way.
@@ -102,6 +112,24 @@ pub fn flat_pose(figure: &Figure, rng: &mut ChaCha8Rng) -> Vec<Vec2> {
         placed[to] = (at + bone * rng.random_range(0.85..1.15), turn);
     }
     placed.into_iter().map(|(at, _)| at).collect()
+}
+
+/// A pose (metres) as someone draws it who misjudges its bones, each by up to `stretch` of its length, and turns the sheet by up
+/// to `roll_rad`.
+pub fn misdrawn(
+    figure: &Figure,
+    pose: &[Vec2],
+    stretch: f32,
+    roll_rad: f32,
+    rng: &mut ChaCha8Rng,
+) -> Vec<Vec2> {
+    let roll = Vec2::from_angle(rng.random_range(-roll_rad..roll_rad));
+    let mut drawn = pose.to_vec();
+    for [from, to] in figure.bones_outward() {
+        let bone = roll.rotate(pose[to] - pose[from]);
+        drawn[to] = drawn[from] + rng.random_range(1.0 - stretch..1.0 + stretch) * bone;
+    }
+    drawn
 }
 
 /// Whether a flat drawing of a pose, metres, says where its joints are: limbs are not folded flat, ends do not lie on the

@@ -13,9 +13,15 @@ const RIGHT: f32 = 0.06;
 
 /// Draws a pose (metres, as large as people and horses are) with strokes in any order, and says whether
 /// [`recognize_any`] puts every joint within 6 % of the figure's height of where it is meant, left and right by its rule.
-pub fn is_recognised(figure: &Figure, rng: &mut ChaCha8Rng, pose: &[Vec2], hand: Hand) -> bool {
+pub fn is_recognised(
+    figure: &Figure,
+    rng: &mut ChaCha8Rng,
+    pose: &[Vec2],
+    hand: Hand,
+    habits: Habits,
+) -> bool {
     let meant = on_canvas(pose, hand.height_px);
-    let strokes = draw(figure, rng, &meant, &[], hand, Habits::of(figure));
+    let strokes = draw(figure, rng, &meant, &[], hand, habits);
     recognize_any(figure, &strokes).is_ok_and(|found| {
         let meant = by_the_rule(figure, &meant, &found.joints);
         farthest_px(&found.joints, &meant) < RIGHT * hand.height_px

@@ -4,7 +4,7 @@ use glam::Vec2;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use stick3d_figure::figure::Figure;
-use stick3d_figure::simulate::any_order::{flat_pose, is_readable};
+use stick3d_figure::simulate::any_order::{Habits, flat_pose, is_readable};
 use stick3d_figure::simulate::{Hand, is_recognised};
 
 use crate::dataset::rounded;
@@ -47,7 +47,13 @@ impl Recognition {
         for _ in 0..times {
             self.drawings += 1;
             let hand = Hand::any_order();
-            self.recognised += usize::from(is_recognised(figure, rng, &joints, hand));
+            self.recognised += usize::from(is_recognised(
+                figure,
+                rng,
+                &joints,
+                hand,
+                Habits::of(figure),
+            ));
         }
         self.percent = self.share();
     }

@@ -59,7 +59,7 @@ impl Search<'_> {
             } else {
                 (reading.rotation, reading.facing)
             };
-            cost += direction_cost(chain, way, rotation, facing);
+            cost += self.direction_cost(chain, way, rotation, facing);
             if way.bones.len() < chain.lengths.len() {
                 cost += BEGUN_COST;
             }
@@ -145,6 +145,28 @@ impl Search<'_> {
         }
         cost
     }
+
+    /// What the directions of a chain's bones cost beside the template's, turned as the trunk is turned. Neck and tail of a body
+    /// seen from its side may also point as if it stood level: a horse that rears keeps its head up, and its tail hangs.
+    fn direction_cost(&self, chain: &Chain, way: &Way, rotation: Vec2, facing: f32) -> f32 {
+        let weight = if chain.center { CENTER_COST } else { SIDE_COST };
+        let keeps_level = chain.center && self.body.both_ways;
+        let bones = way.bones.iter().zip(&chain.directions).enumerate();
+        bones
+            .map(|(i, (bone, direction))| {
+                let level = *direction * Vec2::new(facing, 1.0);
+                let bone = bone.normalize_or_zero();
+                let turned = rotation.rotate(level).dot(bone);
+                let along = if keeps_level {
+                    turned.max(level.dot(bone))
+                } else {
+                    turned
+                };
+                let weight = if i == 0 { weight } else { LATER_BONE_COST };
+                weight * (1.0 - along)
+            })
+            .sum()
+    }
 }
 
 /// How the template is turned when the first chain lies on this way.
@@ -154,18 +176,6 @@ fn rotation(chain: &Chain, way: &Way, facing: f32) -> Vec2 {
     let there = there * Vec2::new(facing, 1.0);
     let here: Vec2 = way.bones.iter().sum();
     Vec2::new(there.dot(here), there.perp_dot(here)).normalize_or(Vec2::X)
-}
-
-fn direction_cost(chain: &Chain, way: &Way, rotation: Vec2, facing: f32) -> f32 {
-    let weight = if chain.center { CENTER_COST } else { SIDE_COST };
-    let bones = way.bones.iter().zip(&chain.directions).enumerate();
-    bones
-        .map(|(i, (bone, direction))| {
-            let there = rotation.rotate(*direction * Vec2::new(facing, 1.0));
-            let weight = if i == 0 { weight } else { LATER_BONE_COST };
-            weight * (1.0 - there.dot(bone.normalize_or_zero()))
-        })
-        .sum()
 }
 
 /// A limb beside the one of the other side.

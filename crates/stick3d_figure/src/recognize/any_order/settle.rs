@@ -1,5 +1,5 @@
 //! Elbows and knees put where the ink and the template agree best. A limb that is hardly bent has no corner that could
-//! be found before it is known to be a limb.
+//! be found before it is known to be a limb; where two strokes of it meet, its joint is likely to be.
 
 use glam::Vec2;
 
@@ -15,12 +15,19 @@ const STRAIGHTNESS: f32 = 0.006;
 const BOW: f32 = 0.012;
 /// Deviations along a line are alike over about this part of the tolerance length.
 const CORRELATION: f32 = 0.08;
+/// Stroke ends so near to one another, in parts of the tolerance length, are where one stroke went on for the other,
+const MEETING: f32 = 0.04;
+/// and so near to the joint that is meant there: standard deviation.
+const AIM: f32 = 0.012;
+/// What a limb costs whose strokes meet elsewhere than at its joint: who lifts the pen mostly does so at joints.
+const CUT_COST: f32 = 2.2;
 /// How often all joints of a limb are settled, each between its neighbours.
 const ROUNDS: usize = 2;
 
 /// Where a reading puts the joints of the figure, those in the middle of limbs settled on the ink.
 pub(super) fn settled(search: &Search, reading: &Reading) -> Vec<Option<Vec2>> {
     let mut joints = search.joints(reading);
+    let meetings = meetings(search);
     for (chain, way) in search.body.chains.iter().zip(&reading.ways) {
         let Some(way) = way else { continue };
         let ink = search.points_of(way);
@@ -37,6 +44,7 @@ pub(super) fn settled(search: &Search, reading: &Reading) -> Vec<Option<Vec2>> {
                         middle,
                         [before, at, after],
                         &ink,
+                        &meetings,
                         search.unit(),
                     ));
                 }
@@ -46,42 +54,70 @@ pub(super) fn settled(search: &Search, reading: &Reading) -> Vec<Option<Vec2>> {
     joints
 }
 
+/// Where the ends of two strokes meet.
+fn meetings(search: &Search) -> Vec<Vec2> {
+    let ink = search.ink;
+    let ends: Vec<[Vec2; 2]> = ink
+        .strokes
+        .iter()
+        .map(|stroke| [ink.samples[stroke.start], ink.samples[stroke.end - 1]])
+        .collect();
+    let mut meetings = vec![];
+    for (i, one) in ends.iter().enumerate() {
+        for (a, b) in ends[i + 1..]
+            .iter()
+            .flatten()
+            .flat_map(|b| one.iter().map(move |a| (a, b)))
+        {
+            if a.distance(*b) < MEETING * search.unit() {
+                meetings.push(a.midpoint(*b));
+            }
+        }
+    }
+    meetings
+}
+
 /// The best place of the joint after bone `middle`, of those on the ink and the one where it is.
 fn settle(
     chain: &Chain,
     middle: usize,
     [before, at, after]: [Vec2; 3],
     ink: &[(Vec2, f32)],
+    meetings: &[Vec2],
     unit: f32,
 ) -> Vec2 {
     let ratio = chain.lengths[middle] / chain.lengths[middle + 1];
     let length = before.distance(at) + at.distance(after);
     // In a longer chain the ink of other bones is none of this joint's business.
-    let near: Vec<(Vec2, f32)> = ink
-        .iter()
-        .copied()
-        .filter(|(p, _)| {
-            distance_to_line(*p, before, at).min(distance_to_line(*p, at, after)) < 0.1 * length
-        })
-        .collect();
+    let aside = |p: Vec2, middle| {
+        distance_to_line(p, before, middle).min(distance_to_line(p, middle, after))
+    };
+    let is_near = |p: Vec2| aside(p, at) < 0.1 * length;
+    let near: Vec<(Vec2, f32)> = ink.iter().copied().filter(|(p, _)| is_near(*p)).collect();
+    let is_inner =
+        |p: &Vec2| is_near(*p) && p.distance(before).min(p.distance(after)) > MEETING * unit;
+    let meetings: Vec<Vec2> = meetings.iter().copied().filter(is_inner).collect();
     let weight: f32 = near.iter().map(|(_, weight)| weight).sum();
     let sigma = STRAIGHTNESS * unit + BOW * length;
     let independent = length / (CORRELATION * unit);
     let cost = |place: Vec2| {
         let squares: f32 = near
             .iter()
-            .map(|(p, weight)| {
-                weight
-                    * distance_to_line(*p, before, place)
-                        .min(distance_to_line(*p, place, after))
-                        .powi(2)
-            })
+            .map(|(p, weight)| weight * aside(*p, place).powi(2))
             .sum();
         let bend = 0.5 * independent * squares / weight.max(f32::MIN_POSITIVE) / (sigma * sigma);
         let drawn = before.distance(place) / place.distance(after).max(f32::MIN_POSITIVE);
-        bend + 0.5 * ((drawn / ratio).max(1.0e-3).ln() / RATIO_SPREAD).powi(2)
+        let missed = meetings
+            .iter()
+            .map(|p| 0.5 * (p.distance(place) / (AIM * unit)).powi(2));
+        let cut = missed.fold(CUT_COST, f32::min);
+        bend + cut + 0.5 * ((drawn / ratio).max(1.0e-3).ln() / RATIO_SPREAD).powi(2)
     };
-    let places = near.iter().map(|(place, _)| *place).chain([at]);
+    let places = near
+        .iter()
+        .map(|(place, _)| *place)
+        .chain(meetings.iter().copied())
+        .chain([at]);
     places
         .map(|place| (cost(place), place))
         .min_by(|a, b| a.0.total_cmp(&b.0))
