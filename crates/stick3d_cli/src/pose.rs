@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &PoseArguments) -> Outcome {
     Ok(())
 }
 
-/// All bodies that a sketch may mean, the first answer first, then the likeliest, and how long they took.
+/// All bodies that a sketch may mean, the likeliest first, and how long they took.
 struct Answer {
     alternatives: Alternatives,
     bodies: Vec<Body>,

@@ -11,7 +11,8 @@ use glam::Vec3;
 use proptest::prelude::*;
 use stick3d_model::digest::sha256_hex;
 use stick3d_train::pose::{
-    Controls, PoseError, PoseLibrary, PoseSampler, PoseValues, SampleKind, ShippedBody,
+    Controls, ControlsSpec, PoseError, PoseLibrary, PoseSampler, PoseValues, SampleKind,
+    ShippedBody,
 };
 use stick3d_train::rig::Rig;
 
@@ -105,7 +106,7 @@ fn the_horses_library_has_every_gait_and_more() {
         .iter()
         .map(|pose| pose.name.as_str())
         .collect();
-    assert!(names.len() >= 40, "{} poses", names.len());
+    assert!(names.len() >= 200, "{} poses", names.len());
     for (gait, phases) in [
         ("walk", 8),
         ("trot", 4),
@@ -138,6 +139,10 @@ fn the_horses_library_has_every_gait_and_more() {
         "sit",
         "kneel",
         "lie",
+        "recline",
+        "wallow",
+        "get_up",
+        "bent",
     ] {
         assert!(
             names.iter().any(|name| name.contains(word)),
@@ -340,6 +345,44 @@ fn sampled_poses_keep_limits_and_do_not_run_into_themselves() {
                 assert_eq!(overlaps(body, &values, 0.036), Vec::<String>::new());
             }
         }
+    }
+}
+
+/// How far a control strays among natural poses, standard deviation, with so many limbs taken whole.
+fn strays_deg(control: &str, whole_share: f32) -> f32 {
+    let text = ShippedBody::named("horse").unwrap().controls;
+    let mut spec: ControlsSpec = ron::from_str(text).unwrap();
+    spec.whole_share = whole_share;
+    let controls = Controls::bind(&spec, &HORSE.rig).unwrap();
+    let index = controls.index(control, "test").unwrap();
+    let mut sampler = PoseSampler::new(&HORSE.rig, &controls, &HORSE.library, 5);
+    let degrees: Vec<f32> = (0..400)
+        .map(|_| sampler.sample_values(SampleKind::Natural).degrees[index])
+        .collect();
+    let mean = degrees.iter().sum::<f32>() / 400.0;
+    (degrees.iter().map(|d| (d - mean).powi(2)).sum::<f32>() / 400.0).sqrt()
+}
+
+#[test]
+fn limbs_of_one_pose_are_more_extreme_than_blends() {
+    for control in ["neck.lateral", "carpus_l.flexion"] {
+        let [blended, whole] = [0.0, 1.0].map(|share| strays_deg(control, share));
+        println!("{control}: {blended} and {whole} degrees");
+        assert!(
+            whole > 1.1 * blended,
+            "{control}: {blended} and {whole} degrees"
+        );
+    }
+}
+
+#[test]
+fn a_share_that_is_none_is_told() {
+    let text = ShippedBody::named("horse").unwrap().controls;
+    let mut spec: ControlsSpec = ron::from_str(text).unwrap();
+    for wrong in [-0.1, 1.5, f32::NAN] {
+        spec.whole_share = wrong;
+        let error = Controls::bind(&spec, &HORSE.rig).unwrap_err();
+        assert!(error.to_string().contains("whole_share"), "{error}");
     }
 }
 

@@ -78,7 +78,7 @@ enum Wish {
 }
 
 impl SketchAlternatives {
-    /// The bodies, the first answer first, then the likeliest; none without a sketch.
+    /// The bodies, the likeliest first; none without a sketch.
     pub fn as_slice(&self) -> &[Alternative] {
         self.found.as_slice()
     }

@@ -8,12 +8,16 @@ use stick3d_figure::figure::Limb;
 pub struct Alternative {
     /// Its latent, `[latent_len]`.
     pub latent: Vec<f32>,
-    /// How likely it is among the alternatives of its drawing; these sum to 1.
+    /// How likely a body about like this one was drawn: its own likelihood and, the less the farther they are, those of the
+    /// other alternatives. Over the alternatives of a drawing these sum to 1. They are seldom far apart: that a limb points
+    /// toward the viewer is about as likely as that it points away.
     pub probability: f32,
     /// Its joints, metres, the root joint at the origin: one per joint of the figure, in the space of
     /// [`Inference::decode`](super::Inference::decode).
     pub joints: Vec<Vec3>,
     log_weight: f64,
+    /// How likely it is for itself, a share of the likeliest one's.
+    own: f32,
 }
 
 impl Alternative {
@@ -37,10 +41,12 @@ impl Alternative {
     }
 }
 
-/// The first answer is at least so likely, share of the likeliest one's probability.
-const LIKELY_SHARE: f32 = 0.25;
+/// Bodies of which no joint is farther apart than this share of the figure's size are one.
+const SAME_SHARE: f32 = 0.02;
+/// Bodies whose joints are on average so far apart, share of the figure's size, count for one another by 1/e.
+const ALIKE_SHARE: f32 = 0.15;
 
-/// Alternatives, the first answer first, then the likeliest, and memory for them that is used again.
+/// Alternatives, the likeliest first, and memory for them that is used again.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Alternatives {
     list: Vec<Alternative>,
@@ -51,8 +57,7 @@ impl Alternatives {
     /// The most that there are of one drawing.
     pub const MOST: usize = 8;
 
-    /// The alternatives: the first answer, which is nearest to all the likely ones, then the others, the likeliest first.
-    /// Empty before the first [`Inference::infer`](super::Inference::infer).
+    /// The alternatives, the likeliest first: that is the first answer. Empty before the first [`Inference::infer`](super::Inference::infer).
     #[must_use]
     pub fn as_slice(&self) -> &[Alternative] {
         &self.list[..self.len]
@@ -82,35 +87,36 @@ impl Alternatives {
         place.log_weight = log_weight;
     }
 
-    /// Makes probabilities of the weights, merges those of which no joint is as far apart as `same_m`, and puts the first
-    /// answer first: of the likely ones that which is nearest to all, each counted by its probability; then the likeliest.
-    pub(super) fn rank(&mut self, same_m: f32) {
+    /// Merges those of which no joint is as far apart as 2 % of a figure's size, `size_m`, keeps the likeliest, makes probabilities of
+    /// the weights, and puts the likeliest first.
+    pub(super) fn rank(&mut self, size_m: f32) {
         let list = &mut self.list[..self.len];
         list.sort_unstable_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
         let highest = list.first().map_or(0.0, |first| first.log_weight);
-        let sum: f64 = list.iter().map(|a| (a.log_weight - highest).exp()).sum();
         for alternative in list.iter_mut() {
-            alternative.probability = ((alternative.log_weight - highest).exp() / sum) as f32;
+            alternative.own = (alternative.log_weight - highest).exp() as f32;
         }
-        self.merge(same_m);
-        let list = &mut self.list[..self.len];
-        let regret = |candidate: &Alternative| -> f32 {
-            let others = list.iter();
-            others
-                .map(|other| other.probability * candidate.distance_m(other))
-                .sum()
-        };
-        let highest = list.iter().map(|a| a.probability).fold(0.0, f32::max);
-        let likely =
-            (0..list.len()).filter(|index| list[*index].probability >= LIKELY_SHARE * highest);
-        let first = likely.min_by(|a, b| regret(&list[*a]).total_cmp(&regret(&list[*b])));
-        if let Some(first) = first {
-            list[..=first].rotate_right(1);
-        }
+        self.merge(SAME_SHARE * size_m);
         self.len = self.len.min(Self::MOST);
+        self.count_the_like(ALIKE_SHARE * size_m);
         let list = &mut self.list[..self.len];
-        let sum: f32 = list.iter().map(|a| a.probability).sum();
-        list.iter_mut().for_each(|a| a.probability /= sum);
+        list.sort_unstable_by(|a, b| b.probability.total_cmp(&a.probability));
+    }
+
+    /// Makes the likelihoods of single bodies probabilities of bodies like them. One that is likely for itself and nothing like
+    /// the others is a worse answer than one in the middle of many.
+    fn count_the_like(&mut self, alike_m: f32) {
+        let mut sum = 0.0;
+        for index in 0..self.len {
+            let list = &self.list[..self.len];
+            let like = |other: &Alternative| (-list[index].distance_m(other) / alike_m).exp();
+            let probability = list.iter().map(|other| other.own * like(other)).sum();
+            self.list[index].probability = probability;
+            sum += probability;
+        }
+        for alternative in &mut self.list[..self.len] {
+            alternative.probability /= sum;
+        }
     }
 
     fn merge(&mut self, same_m: f32) {
@@ -121,7 +127,7 @@ impl Alternatives {
                 .iter_mut()
                 .find(|other| other.farthest_m(&rest[0]) < same_m);
             match same {
-                Some(other) => other.probability += rest[0].probability,
+                Some(other) => other.own += rest[0].own,
                 None => {
                     self.list.swap(kept, index);
                     kept += 1;

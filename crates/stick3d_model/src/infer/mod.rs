@@ -59,9 +59,6 @@ pub enum InferError {
     },
 }
 
-/// Bodies of which no joint is farther apart than this share of the figure's size are one.
-const SAME_SHARE: f32 = 0.02;
-
 /// The largest number that a latent or a coefficient may have: far beyond any body, far from overflow.
 const LARGEST: f32 = 1e9;
 
@@ -215,7 +212,7 @@ impl Inference {
                 }
             }
         }
-        alternatives.rank(SAME_SHARE * self.figure.template_extent_m());
+        alternatives.rank(self.figure.template_extent_m());
         Ok(())
     }
 

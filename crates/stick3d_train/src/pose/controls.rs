@@ -74,6 +74,7 @@ pub struct Controls {
     /// Per control the limb it belongs to, see [`ControlsSpec::limbs`].
     limb_of: Vec<Option<usize>>,
     limb_count: usize,
+    whole_share: f32,
     body: Body,
 }
 
@@ -94,6 +95,13 @@ impl Controls {
     /// # Errors
     /// As [`Controls::from_ron`].
     pub fn bind(spec: &ControlsSpec, rig: &Rig) -> Result<Self, PoseError> {
+        if !(0.0..=1.0).contains(&spec.whole_share) {
+            let why = format!(
+                "{} is no share: give a number from 0 to 1",
+                spec.whole_share
+            );
+            return Err(PoseError::inconsistent("whole_share", why));
+        }
         let skeleton = rig.skeleton.clone();
         let mut controls = Self {
             rig: spec.rig.clone(),
@@ -106,6 +114,7 @@ impl Controls {
             clips: rig.clips.clone(),
             limb_of: Vec::new(),
             limb_count: 0,
+            whole_share: spec.whole_share,
             body: Body::fit(rig, spec)?,
             skeleton,
         };
@@ -270,6 +279,11 @@ impl Controls {
     /// How many limbs may be posed apart from the trunk.
     pub fn limb_count(&self) -> usize {
         self.limb_count
+    }
+
+    /// See [`ControlsSpec::whole_share`].
+    pub fn whole_share(&self) -> f32 {
+        self.whole_share
     }
 
     /// The body's parts: what touches the ground, and what may not run into each other.

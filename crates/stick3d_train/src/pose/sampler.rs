@@ -173,6 +173,13 @@ impl<'a> PoseSampler<'a> {
 
     /// Weights that sum to 1, one of them mostly in the lead: poses averaged evenly all look alike.
     fn weights(&mut self, count: usize) -> Vec<f32> {
+        let whole_share = f64::from(self.controls.whole_share());
+        if whole_share > 0.0 && self.random.random_bool(whole_share) {
+            let whole = self.random.random_range(0..count);
+            return (0..count)
+                .map(|i| f32::from(u8::from(i == whole)))
+                .collect();
+        }
         let mut weights: Vec<f32> = (0..count)
             .map(|_| self.random.random::<f32>().powi(3) + 1e-3)
             .collect();

@@ -30,6 +30,10 @@ pub struct ControlsSpec {
     /// library than the rest; what is in none stays together.
     #[serde(default)]
     pub limbs: Vec<Vec<String>>,
+    /// How often, from 0 to 1, a limb (or the trunk) of a natural pose is that of one pose of the library instead of a blend of
+    /// several: the more often, the more extreme the poses.
+    #[serde(default)]
+    pub whole_share: f32,
     /// Pieces of the body that touch the ground or each other.
     pub parts: Vec<PartSpec>,
     /// Pairs of parts that may overlap, because flesh gives way there or they are joined.

@@ -96,7 +96,7 @@ fn tiles(alternatives: &SketchAlternatives) -> Vec<Tile<'_>> {
     let found = alternatives.as_slice().iter().take(room).enumerate();
     let found = found.map(|(index, body)| Tile {
         body,
-        words: per_cent(body.probability),
+        words: (index + 1).to_string(),
         about: format!(
             "{} likely to be meant (Tab shows the next)",
             per_cent(body.probability)

@@ -82,7 +82,8 @@ impl AnyOrder {
 ///
 /// - A stroke may run through several bones, a bone may consist of several strokes, bones may be drawn twice; strokes
 ///   may overlap or leave gaps of 3 % of the drawing's size where they meet. Limbs may cross.
-/// - A joint at which nothing bends (a straight arm) is put where the template has it.
+/// - A joint at which nothing bends (a straight arm) is put where two strokes meet, if they do so near the place where the
+///   template has it, and there otherwise.
 /// - A head may be a loop drawn without lifting the pen, alone or with more of the body: the joint at which the figure's
 ///   path starts is then its middle. (The man's forehead is at 1.70 m of his 1.80 m: nearer to the middle of his head
 ///   than to its top.)

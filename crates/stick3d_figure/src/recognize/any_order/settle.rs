@@ -1,6 +1,8 @@
 //! Elbows and knees put where the ink and the template agree best. A limb that is hardly bent has no corner that could
 //! be found before it is known to be a limb; where two strokes of it meet, its joint is likely to be.
 
+use std::ops::Range;
+
 use glam::Vec2;
 
 use super::body::Chain;
@@ -54,23 +56,20 @@ pub(super) fn settled(search: &Search, reading: &Reading) -> Vec<Option<Vec2>> {
     joints
 }
 
-/// Where the ends of two strokes meet.
+/// Where the ends of two strokes meet; places that are hardly apart once.
 fn meetings(search: &Search) -> Vec<Vec2> {
     let ink = search.ink;
-    let ends: Vec<[Vec2; 2]> = ink
-        .strokes
-        .iter()
-        .map(|stroke| [ink.samples[stroke.start], ink.samples[stroke.end - 1]])
-        .collect();
-    let mut meetings = vec![];
-    for (i, one) in ends.iter().enumerate() {
-        for (a, b) in ends[i + 1..]
-            .iter()
-            .flatten()
-            .flat_map(|b| one.iter().map(move |a| (a, b)))
-        {
-            if a.distance(*b) < MEETING * search.unit() {
-                meetings.push(a.midpoint(*b));
+    let ends_of = |stroke: &Range<usize>| [ink.samples[stroke.start], ink.samples[stroke.end - 1]];
+    let mut meetings: Vec<Vec2> = vec![];
+    for (i, one) in ink.strokes.iter().enumerate() {
+        let later: Vec<Vec2> = ink.strokes[i + 1..].iter().flat_map(ends_of).collect();
+        for end in ends_of(one) {
+            let is_near = |p: &&Vec2| p.distance(end) < MEETING * search.unit();
+            for place in later.iter().filter(is_near).map(|p| p.midpoint(end)) {
+                let apart = 0.5 * AIM * search.unit();
+                if meetings.iter().all(|other| other.distance(place) > apart) {
+                    meetings.push(place);
+                }
             }
         }
     }

@@ -53,6 +53,7 @@ pub fn default_controls(rig: &Rig, figure: &Figure) -> Result<ControlsSpec, Pose
         controls: writer.controls(),
         swings: Vec::new(),
         limbs: writer.limbs(),
+        whole_share: 0.0,
         parts: parts::parts(rig, &writer.anatomy, &writer.stems),
         may_overlap: Vec::new(),
         overlap_m: usual_overlap_m() * size,
