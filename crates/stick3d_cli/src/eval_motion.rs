@@ -41,7 +41,7 @@ pub(crate) fn measure(model: &Model, corpus: &Corpus, bar: &Bar) -> Outcome<Moti
     evaluate_motion(model, input, &MotionEvalConfig::default(), bar).map_err(Failure::model)
 }
 
-/// The gaits of the library: poses that are numbered one after the other, `walk_1_heel_strike_r`, `walk_2_...`.
+/// The gaits of the library: four or more poses that are numbered one after the other, `walk_1_heel_strike_r`, `walk_2_...`.
 fn gaits(corpus: &Corpus) -> Vec<TrueMotion> {
     let PoseLibrary { poses } = &corpus.library;
     let numbered = |name: &str| -> Option<(String, usize)> {
@@ -63,7 +63,7 @@ fn gaits(corpus: &Corpus) -> Vec<TrueMotion> {
     }
     gaits
         .into_iter()
-        .filter(|(_, poses)| poses.len() > 2)
+        .filter(|(_, poses)| poses.len() >= 4)
         .map(|(name, poses)| TrueMotion::between(name, poses, GAIT_INTERVAL_S, true))
         .collect()
 }
