@@ -137,3 +137,59 @@ impl Alternatives {
         self.len = kept;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bodies of one joint, at these places on the x axis, metres, with these probabilities.
+    fn ranked(bodies: &[(f32, f64)]) -> Alternatives {
+        let mut alternatives = Alternatives::default();
+        for (x, probability) in bodies {
+            alternatives.add(&[*x], &[Vec3::new(*x, 0.0, 0.0)], probability.ln());
+        }
+        alternatives.rank(1.0);
+        alternatives
+    }
+
+    fn places(alternatives: &Alternatives) -> Vec<f32> {
+        alternatives
+            .as_slice()
+            .iter()
+            .map(|a| a.latent[0])
+            .collect()
+    }
+
+    #[test]
+    fn one_in_the_middle_of_likely_ones_is_before_a_likelier_one_that_is_alone() {
+        let found = ranked(&[(5.0, 0.34), (0.1, 0.22), (0.0, 0.22), (-0.1, 0.22)]);
+        assert_eq!(places(&found)[0], 0.0);
+        assert_eq!(places(&found)[3], 5.0);
+        let alone = ranked(&[(5.0, 0.7), (0.1, 0.1), (0.0, 0.1), (-0.1, 0.1)]);
+        assert_eq!(places(&alone)[0], 5.0);
+        for found in [found, alone] {
+            let list = found.as_slice();
+            assert!(list.is_sorted_by(|a, b| a.probability >= b.probability));
+            let sum: f32 = list.iter().map(|a| a.probability).sum();
+            assert!((sum - 1.0).abs() < 1e-5, "{sum}");
+        }
+    }
+
+    #[test]
+    fn bodies_that_are_one_count_as_one() {
+        let found = ranked(&[(0.0, 0.3), (0.01, 0.3), (3.0, 0.4)]);
+        assert_eq!(found.as_slice().len(), 2);
+        assert_eq!(places(&found)[0], 0.0);
+        assert!((found.as_slice()[0].probability - 0.6).abs() < 1e-4);
+    }
+
+    #[test]
+    fn the_least_likely_of_too_many_are_left_out() {
+        let bodies: Vec<(f32, f64)> = (0_u8..12)
+            .map(|i| (f32::from(i), 1.0 + f64::from(i)))
+            .collect();
+        let found = ranked(&bodies);
+        assert_eq!(found.as_slice().len(), Alternatives::MOST);
+        assert!(places(&found).iter().all(|x| *x >= 4.0));
+    }
+}
