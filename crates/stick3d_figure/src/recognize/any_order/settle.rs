@@ -21,8 +21,8 @@ const CORRELATION: f32 = 0.08;
 const MEETING: f32 = 0.04;
 /// and so near to the joint that is meant there: standard deviation.
 const AIM: f32 = 0.012;
-/// What a limb costs whose strokes meet elsewhere than at its joint: who lifts the pen mostly does so at joints.
-const CUT_COST: f32 = 2.2;
+/// What a limb costs whose strokes meet elsewhere than at its joint, in a drawing of a stroke per bone.
+const CUT_COST: f32 = 4.0;
 /// How often all joints of a limb are settled, each between its neighbours.
 const ROUNDS: usize = 2;
 
@@ -30,6 +30,7 @@ const ROUNDS: usize = 2;
 pub(super) fn settled(search: &Search, reading: &Reading) -> Vec<Option<Vec2>> {
     let mut joints = search.joints(reading);
     let meetings = meetings(search);
+    let cut_cost = CUT_COST * lifted_share(search, &joints, &meetings).powi(2);
     for (chain, way) in search.body.chains.iter().zip(&reading.ways) {
         let Some(way) = way else { continue };
         let ink = search.points_of(way);
@@ -46,7 +47,7 @@ pub(super) fn settled(search: &Search, reading: &Reading) -> Vec<Option<Vec2>> {
                         middle,
                         [before, at, after],
                         &ink,
-                        &meetings,
+                        (&meetings, cut_cost),
                         search.unit(),
                     ));
                 }
@@ -76,43 +77,77 @@ fn meetings(search: &Search) -> Vec<Vec2> {
     meetings
 }
 
+/// The share of elbows and knees whose limb is two strokes: who draws some of them in one stroke, or in three, lifts the pen
+/// anywhere.
+fn lifted_share(search: &Search, joints: &[Option<Vec2>], meetings: &[Vec2]) -> f32 {
+    let (mut inner, mut lifted) = (0, 0);
+    for chain in &search.body.chains {
+        let row: Vec<Option<Vec2>> = std::iter::once(chain.from)
+            .chain(chain.joints.iter().copied())
+            .map(|joint| joints[joint])
+            .collect();
+        for three in row.windows(3) {
+            let [Some(before), Some(at), Some(after)] = three[..] else {
+                continue;
+            };
+            inner += 1;
+            let here = between(meetings, [before, at, after], search.unit());
+            lifted += usize::from(here.count() == 1);
+        }
+    }
+    lifted as f32 / inner.max(1) as f32
+}
+
+/// Those of some places that are on a limb, away from its ends.
+fn between(places: &[Vec2], limb: [Vec2; 3], unit: f32) -> impl Iterator<Item = Vec2> + '_ {
+    let [before, _, after] = limb;
+    places.iter().copied().filter(move |p| {
+        aside(*p, limb) < near(limb) && p.distance(before).min(p.distance(after)) > MEETING * unit
+    })
+}
+
+/// How far a place is beside a limb.
+fn aside(place: Vec2, [before, at, after]: [Vec2; 3]) -> f32 {
+    distance_to_line(place, before, at).min(distance_to_line(place, at, after))
+}
+
+/// How far ink may be beside a limb: in a longer chain the ink of other bones is none of a joint's business.
+fn near([before, at, after]: [Vec2; 3]) -> f32 {
+    0.1 * (before.distance(at) + at.distance(after))
+}
+
 /// The best place of the joint after bone `middle`, of those on the ink and the one where it is.
 fn settle(
     chain: &Chain,
     middle: usize,
     [before, at, after]: [Vec2; 3],
     ink: &[(Vec2, f32)],
-    meetings: &[Vec2],
+    (meetings, cut_cost): (&[Vec2], f32),
     unit: f32,
 ) -> Vec2 {
     let ratio = chain.lengths[middle] / chain.lengths[middle + 1];
     let length = before.distance(at) + at.distance(after);
-    // In a longer chain the ink of other bones is none of this joint's business.
-    let aside = |p: Vec2, middle| {
-        distance_to_line(p, before, middle).min(distance_to_line(p, middle, after))
-    };
-    let is_near = |p: Vec2| aside(p, at) < 0.1 * length;
-    let near: Vec<(Vec2, f32)> = ink.iter().copied().filter(|(p, _)| is_near(*p)).collect();
-    let is_inner =
-        |p: &Vec2| is_near(*p) && p.distance(before).min(p.distance(after)) > MEETING * unit;
-    let meetings: Vec<Vec2> = meetings.iter().copied().filter(is_inner).collect();
-    let weight: f32 = near.iter().map(|(_, weight)| weight).sum();
+    let limb = [before, at, after];
+    let is_near = |(p, _): &(Vec2, f32)| aside(*p, limb) < near(limb);
+    let ink: Vec<(Vec2, f32)> = ink.iter().copied().filter(is_near).collect();
+    let meetings: Vec<Vec2> = between(meetings, limb, unit).collect();
+    let weight: f32 = ink.iter().map(|(_, weight)| weight).sum();
     let sigma = STRAIGHTNESS * unit + BOW * length;
     let independent = length / (CORRELATION * unit);
     let cost = |place: Vec2| {
-        let squares: f32 = near
+        let squares: f32 = ink
             .iter()
-            .map(|(p, weight)| weight * aside(*p, place).powi(2))
+            .map(|(p, weight)| weight * aside(*p, [before, place, after]).powi(2))
             .sum();
         let bend = 0.5 * independent * squares / weight.max(f32::MIN_POSITIVE) / (sigma * sigma);
         let drawn = before.distance(place) / place.distance(after).max(f32::MIN_POSITIVE);
         let missed = meetings
             .iter()
             .map(|p| 0.5 * (p.distance(place) / (AIM * unit)).powi(2));
-        let cut = missed.fold(CUT_COST, f32::min);
+        let cut = missed.fold(cut_cost, f32::min);
         bend + cut + 0.5 * ((drawn / ratio).max(1.0e-3).ln() / RATIO_SPREAD).powi(2)
     };
-    let places = near
+    let places = ink
         .iter()
         .map(|(place, _)| *place)
         .chain(meetings.iter().copied())
