@@ -117,6 +117,7 @@ fn statistics(numbers: &mut Numbers) -> TrainingStatistics {
         far: 2.0,
         longest_edges_m: unique_edges(&triangles).iter().map(|_| 50.0).collect(),
         answer_ways: vec![],
+        exact_from: 1.5,
     };
     statistics.round_to_half();
     statistics

@@ -342,14 +342,14 @@ fn meshes_in_every_dialect_train_what_their_rig_trains() {
     assert_eq!(report.parts[0].cases, 2 * HELD_OUT);
     assert!(report == of_rig_report);
 
-    // Six decimals, as the exporter writes, are half a micrometre: the bodies of the same sketches differ by less than
-    // a tenth of a millimetre.
+    // Six decimals, as the exporter writes, are half a micrometre: the bodies that the networks give to the same sketches
+    // differ by less than a tenth of a millimetre. Refinement weighs answers, so there it may be half a millimetre.
     let mut set = read(rounded.path(), &figure);
     for (mesh, name) in set.meshes.iter_mut().zip(names()) {
         mesh.name = name;
     }
     let of_rounded = trained_on(&set, &figure);
-    let bodies = |model: &Model| -> Vec<Vec3> {
+    let bodies = |model: &Model, refined: bool| -> Vec<Vec3> {
         let mut inference = stick3d_model::Inference::new(model).unwrap();
         let (mut latent, mut body) = (vec![0.0; 8], vec![[0.0; 3]; set.vertex_count()]);
         let sketches = [0.0, 0.4, 1.1].map(|bend: f32| {
@@ -359,17 +359,22 @@ fn meshes_in_every_dialect_train_what_their_rig_trains() {
         });
         let mut all = vec![];
         for sketch in sketches {
-            inference.encode(&sketch, &mut latent).unwrap();
+            match refined {
+                true => inference.encode(&sketch, &mut latent).unwrap(),
+                false => inference.encode_plain(&sketch, &mut latent).unwrap(),
+            }
             inference.decode_positions(&latent, &mut body).unwrap();
             all.extend(body.iter().copied().map(Vec3::from));
         }
         all
     };
-    let (exact, rounded) = (bodies(&of_meshes), bodies(&of_rounded));
-    let farthest = exact
-        .iter()
-        .zip(&rounded)
-        .map(|(a, b)| a.distance(*b))
-        .fold(0.0, f32::max);
-    assert!(farthest > 0.0 && farthest < 1e-4, "{farthest} m");
+    for (refined, bound_m) in [(false, 1e-4), (true, 5e-4)] {
+        let pair = [&of_meshes, &of_rounded].map(|model| bodies(model, refined));
+        let distances = pair[0].iter().zip(&pair[1]).map(|(a, b)| a.distance(*b));
+        let farthest = distances.fold(0.0, f32::max);
+        assert!(
+            farthest > 0.0 && farthest < bound_m,
+            "refined: {refined}: {farthest} m"
+        );
+    }
 }

@@ -106,7 +106,7 @@ fn the_horses_library_has_every_gait_and_more() {
         .iter()
         .map(|pose| pose.name.as_str())
         .collect();
-    assert!(names.len() >= 200, "{} poses", names.len());
+    assert!(names.len() >= 260, "{} poses", names.len());
     for (gait, phases) in [
         ("walk", 8),
         ("trot", 4),
@@ -143,6 +143,8 @@ fn the_horses_library_has_every_gait_and_more() {
         "wallow",
         "get_up",
         "bent",
+        "round",
+        "rolling",
     ] {
         assert!(
             names.iter().any(|name| name.contains(word)),
@@ -348,29 +350,28 @@ fn sampled_poses_keep_limits_and_do_not_run_into_themselves() {
     }
 }
 
-/// How far a control strays among natural poses, standard deviation, with so many limbs taken whole.
-fn strays_deg(control: &str, whole_share: f32) -> f32 {
+/// How many of 400 natural poses move a control so far, with so many limbs taken whole.
+fn poses_beyond(control: &str, degrees: f32, whole_share: f32) -> usize {
     let text = ShippedBody::named("horse").unwrap().controls;
     let mut spec: ControlsSpec = ron::from_str(text).unwrap();
     spec.whole_share = whole_share;
     let controls = Controls::bind(&spec, &HORSE.rig).unwrap();
     let index = controls.index(control, "test").unwrap();
     let mut sampler = PoseSampler::new(&HORSE.rig, &controls, &HORSE.library, 5);
-    let degrees: Vec<f32> = (0..400)
+    (0..400)
         .map(|_| sampler.sample_values(SampleKind::Natural).degrees[index])
-        .collect();
-    let mean = degrees.iter().sum::<f32>() / 400.0;
-    (degrees.iter().map(|d| (d - mean).powi(2)).sum::<f32>() / 400.0).sqrt()
+        .filter(|found| found.abs() > degrees)
+        .count()
 }
 
 #[test]
 fn limbs_of_one_pose_are_more_extreme_than_blends() {
-    for control in ["neck.lateral", "carpus_l.flexion"] {
-        let [blended, whole] = [0.0, 1.0].map(|share| strays_deg(control, share));
-        println!("{control}: {blended} and {whole} degrees");
+    for (control, degrees) in [("neck.lateral", 80.0), ("carpus_l.flexion", 105.0)] {
+        let [blended, whole] = [0.0, 1.0].map(|share| poses_beyond(control, degrees, share));
+        println!("{control}: {blended} and {whole} poses");
         assert!(
-            whole > 1.1 * blended,
-            "{control}: {blended} and {whole} degrees"
+            4 * whole > 5 * blended,
+            "{control}: {blended} and {whole} poses beyond {degrees} degrees"
         );
     }
 }

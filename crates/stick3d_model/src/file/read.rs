@@ -283,6 +283,11 @@ impl Arrays<'_> {
                 true => self.half("statistics.answer_ways", 1)?.1,
                 false => vec![],
             },
+            exact_from: match self.has("statistics.exact_from") {
+                true => self.f32("statistics.exact_from", 1)?.1.first().copied(),
+                false => None,
+            }
+            .unwrap_or_default(),
         }))
     }
 

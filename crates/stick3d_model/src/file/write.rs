@@ -127,6 +127,7 @@ impl Arrays {
             far,
             longest_edges_m,
             answer_ways,
+            exact_from,
         } = statistics;
         self.put_f32("statistics.mean", &[mean.len()], mean);
         self.put_half("statistics.whitening", &[whitening.len()], whitening);
@@ -138,6 +139,9 @@ impl Arrays {
         );
         if !answer_ways.is_empty() {
             self.put_half("statistics.answer_ways", &[answer_ways.len()], answer_ways);
+        }
+        if *exact_from != 0.0 {
+            self.put_f32("statistics.exact_from", &[1], &[*exact_from]);
         }
     }
 

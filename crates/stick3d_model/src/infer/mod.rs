@@ -216,6 +216,33 @@ impl Inference {
         Ok(())
     }
 
+    /// The natural logarithm of how much likelier a sketch is as an exact drawing of a body than as a crooked one; what training
+    /// measures [`exact_from`](crate::latent::TrainingStatistics::exact_from) with. `None` where the model does not know how
+    /// its answers are off.
+    ///
+    /// # Errors
+    /// As [`Inference::encode`].
+    pub fn exact_over_crooked(&mut self, sketch: &Sketch) -> Result<Option<f64>, InferError> {
+        self.take_marks(&[])?;
+        let output = encoder2d_output(&mut self.encoder2d, &mut self.input, &self.figure, sketch)?;
+        let hypotheses = Hypotheses::new(output, self.latent_len);
+        let (Some(refiner), JointMap::Linear(rows)) = (&mut self.refiner, &self.joints) else {
+            return Ok(None);
+        };
+        let mut body = Body {
+            head: &mut self.head,
+            layer: &self.final_layer,
+            scratch: &mut self.final_scratch,
+            rows,
+        };
+        let drawn = Drawn {
+            points: sketch.points(),
+            marks: &self.marks,
+        };
+        let judged = refiner.judge(&hypotheses, drawn, &mut body);
+        Ok(Some(judged.exact_over_crooked))
+    }
+
     /// What the joints say; none at all: that all were drawn.
     fn take_marks(&mut self, marks: &[JointMark]) -> Result<(), InferError> {
         if marks.is_empty() {
@@ -373,7 +400,8 @@ impl Inference {
 }
 
 fn refiner(model: &Model) -> Option<Refiner> {
-    let ways = &model.statistics()?.answer_ways;
+    let statistics = model.statistics()?;
+    let ways = &statistics.answer_ways;
     if ways.is_empty() || model.final_layer().matrix_columns() == 0 {
         return None;
     }
@@ -383,6 +411,7 @@ fn refiner(model: &Model) -> Option<Refiner> {
         model.head(),
         model.final_layer(),
         ways,
+        statistics.exact_from,
         hypotheses,
     ))
 }

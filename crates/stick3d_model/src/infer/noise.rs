@@ -34,11 +34,11 @@ pub(super) const CROOKED: [Noise; 5] = [
     noise(0.025, 0.16, 0.1),
 ];
 
-/// How likely a drawing is exact, from the logarithms of how likely it is exactly and crookedly drawn.
-pub(super) fn exactness(exact: f64, crooked: f64) -> f64 {
+/// How likely a drawing is exact, from the logarithm of how much likelier it is exactly than crookedly drawn.
+pub(super) fn exactness(exact_over_crooked: f64) -> f64 {
     /// As proposals are not normally distributed, the difference is too sure.
     const SURE: f64 = 0.5;
-    1.0 / (1.0 + (-SURE * (exact - crooked)).exp())
+    1.0 / (1.0 + (-SURE * exact_over_crooked).exp())
 }
 
 /// A place anywhere: standard deviation, shares of the figure's size.

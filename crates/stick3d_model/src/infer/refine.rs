@@ -33,6 +33,16 @@ pub(super) struct Refiner {
     crooked: Vec<Proposal>,
     /// What they are if it is exact.
     exact: Vec<Proposal>,
+    /// See [`exact_from`](crate::latent::TrainingStatistics::exact_from).
+    exact_from: f64,
+}
+
+/// How badly a drawing is drawn, as its proposals see it.
+pub(super) struct Judged {
+    /// How, if it is crooked.
+    crooked: Noise,
+    /// The logarithm of how much likelier it is as an exact drawing than as that crooked one.
+    pub(super) exact_over_crooked: f64,
 }
 
 impl Refiner {
@@ -43,6 +53,7 @@ impl Refiner {
         head: &MlpWeights,
         layer: &FinalLayer,
         ways: &[f32],
+        exact_from: f32,
         hypotheses: usize,
     ) -> Self {
         let slopes = Slopes::new(head, layer, ways);
@@ -55,6 +66,51 @@ impl Refiner {
             measurement,
             crooked: vec![proposal.clone(); hypotheses + 1],
             exact: vec![proposal; hypotheses + 1],
+            exact_from: f64::from(exact_from),
+        }
+    }
+
+    /// How many proposals there are: one per hypothesis, and where those are several, their mean.
+    fn count(&self, hypotheses: &Hypotheses<'_>) -> usize {
+        let several = hypotheses.len().min(self.crooked.len() - 1);
+        several + usize::from(several > 1)
+    }
+
+    /// Puts proposals at Encoder2D's answers, the last of several at their mean.
+    fn begin(&mut self, hypotheses: &Hypotheses<'_>, drawn: Drawn<'_>, body: &mut Body<'_>) {
+        let count = self.count(hypotheses);
+        for (index, proposal) in self.crooked[..count].iter_mut().enumerate() {
+            proposal.begin(|start| match index + 1 < count || count == 1 {
+                true => start.copy_from_slice(hypotheses.latent(index)),
+                false => hypotheses.write_mean(start),
+            });
+            proposal.look(body, drawn);
+            proposal.differentiate(body, &mut self.slopes);
+            proposal.gather(&self.measurement.skeleton, drawn.marks);
+        }
+    }
+
+    /// How badly a drawing is drawn: whatever makes it likeliest under all proposals.
+    pub(super) fn judge(
+        &mut self,
+        hypotheses: &Hypotheses<'_>,
+        drawn: Drawn<'_>,
+        body: &mut Body<'_>,
+    ) -> Judged {
+        self.begin(hypotheses, drawn, body);
+        let proposals = &self.crooked[..self.count(hypotheses)];
+        let measurement = &mut self.measurement;
+        let mut evidence = |noise| measurement.evidence(proposals, hypotheses, noise, drawn.marks);
+        let mut crooked = (f64::NEG_INFINITY, CROOKED[0]);
+        for noise in CROOKED {
+            let likely = evidence(noise);
+            if likely > crooked.0 {
+                crooked = (likely, noise);
+            }
+        }
+        Judged {
+            crooked: crooked.1,
+            exact_over_crooked: evidence(EXACT) - crooked.0,
         }
     }
 
@@ -65,28 +121,11 @@ impl Refiner {
         drawn: Drawn<'_>,
         body: &mut Body<'_>,
     ) -> &[Proposal] {
-        let several = hypotheses.len().min(self.crooked.len() - 1);
-        let count = several + usize::from(several > 1);
-        for (index, proposal) in self.crooked[..count].iter_mut().enumerate() {
-            proposal.begin(|start| match index < several {
-                true => start.copy_from_slice(hypotheses.latent(index)),
-                false => hypotheses.write_mean(start),
-            });
-            proposal.look(body, drawn);
-            proposal.differentiate(body, &mut self.slopes);
-            proposal.gather(&self.measurement.skeleton, drawn.marks);
-        }
+        let judged = self.judge(hypotheses, drawn, body);
+        let mut exactness = exactness(judged.exact_over_crooked - self.exact_from);
+        let count = self.count(hypotheses);
         let measurement = &mut self.measurement;
         let (crooked, exact) = (&mut self.crooked[..count], &mut self.exact[..count]);
-        let mut crooked_as = (f64::NEG_INFINITY, CROOKED[0]);
-        for noise in CROOKED {
-            let evidence = measurement.evidence(crooked, hypotheses, noise, drawn.marks);
-            if evidence > crooked_as.0 {
-                crooked_as = (evidence, noise);
-            }
-        }
-        let exact_evidence = measurement.evidence(crooked, hypotheses, EXACT, drawn.marks);
-        let mut exactness = exactness(exact_evidence, crooked_as.0);
         if drawn.marks.contains(&JointMark::Pinned) {
             // A body between two that hold a joint need not hold it.
             exactness = exactness.round();
@@ -105,7 +144,14 @@ impl Refiner {
         if exactness >= 1.0 - UNLIKELY {
             return exact;
         }
-        settle(crooked, hypotheses, crooked_as.1, measurement, drawn, body);
+        settle(
+            crooked,
+            hypotheses,
+            judged.crooked,
+            measurement,
+            drawn,
+            body,
+        );
         if exactness > UNLIKELY {
             for (proposal, exact) in crooked.iter_mut().zip(exact) {
                 proposal.come_nearer(exact, exactness as f32);

@@ -21,6 +21,10 @@ pub struct TrainingStatistics {
     /// it was on average (root of the mean square), the longest first. Empty where that was not measured; sketches' bodies
     /// are then not pulled onto the drawing.
     pub answer_ways: Vec<f32>,
+    /// How much likelier a drawing must be as an exact one than as a crooked one, natural logarithm, to be held for either with
+    /// the same right. Proposals are not normally distributed, so it is not 0: the better a model knows its bodies, the more
+    /// of what is crooked it can explain. 0 where that was not measured.
+    pub exact_from: f32,
 }
 
 impl TrainingStatistics {
@@ -79,6 +83,12 @@ impl TrainingStatistics {
                 found: self.answer_ways.len() % latent_len,
             });
         }
+        if !self.exact_from.is_finite() {
+            return Err(ModelError::NotFinite {
+                name: "statistics.exact_from".to_owned(),
+                index: 0,
+            });
+        }
         if !(self.far.is_finite() && self.far > 0.0) {
             return Err(ModelError::NotFinite {
                 name: "statistics.far".to_owned(),
@@ -102,6 +112,7 @@ mod tests {
             far: 1.5,
             longest_edges_m: vec![],
             answer_ways: vec![],
+            exact_from: 0.0,
         }
     }
 

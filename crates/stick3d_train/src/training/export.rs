@@ -6,6 +6,7 @@ use stick3d_model::metadata::{
 use stick3d_model::weights::LinearWeights;
 use stick3d_model::{Model, ModelParts};
 
+use super::exactness::exact_from;
 use super::losses::CodeScale;
 use super::networks::NetworkWeights;
 use super::run::Run;
@@ -75,6 +76,19 @@ pub(super) fn model(
         config.augmentation,
         config.seed,
     )?);
+    let model = Model::new(parts)?;
+    let (rotations, augmentation) = (config.rotations, config.augmentation);
+    let exact_from = exact_from(
+        &model,
+        &material.bodies,
+        rotations,
+        augmentation,
+        config.seed,
+    )?;
+    let mut parts = model.into_parts();
+    if let Some(statistics) = &mut parts.statistics {
+        statistics.exact_from = exact_from;
+    }
     Ok(Model::new(parts)?)
 }
 

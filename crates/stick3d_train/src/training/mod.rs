@@ -13,6 +13,7 @@ mod answers;
 pub(crate) mod checkpoint;
 mod config;
 mod error;
+mod exactness;
 mod export;
 pub(crate) mod init;
 mod log;

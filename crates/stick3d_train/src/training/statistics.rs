@@ -59,6 +59,7 @@ pub(crate) fn of_latents(
         far: 1.0,
         longest_edges_m,
         answer_ways,
+        exact_from: 0.0,
     };
     statistics.round_to_half();
     let mut distances: Vec<f32> = latents.iter().map(|z| statistics.distance(z)).collect();
@@ -163,6 +164,7 @@ mod tests {
             far: 1.0,
             longest_edges_m: vec![],
             answer_ways: vec![],
+            exact_from: 0.0,
         };
         let squares = latents.iter().map(|z| statistics.distance(z).powi(2));
         let mean_square = squares.sum::<f32>() / latents.len() as f32;
