@@ -1,8 +1,8 @@
 //! Two sketches become a motion: between them, and beyond both. Space pauses.
 //!
-//! `cargo run --release --example animate`
-//! `cargo run --release --example animate -- --screenshot beyond.png --at 1.1`
-//! `cargo run --release --example animate -- --screenshot frames --frames 8 --every 10`
+//! `cargo run --example animate`
+//! `cargo run --example animate -- --screenshot beyond.png --at 1.1`
+//! `cargo run --example animate -- --screenshot frames --frames 8 --every 10`
 
 mod pictures;
 mod scene;

@@ -1,7 +1,7 @@
 //! A man and a horse in one scene, each from a drawing of its own.
 //!
-//! `cargo run --release --example both_figures`
-//! `cargo run --release --example both_figures -- --screenshot both.png`
+//! `cargo run --example both_figures`
+//! `cargo run --example both_figures -- --screenshot both.png`
 
 mod scene;
 

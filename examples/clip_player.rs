@@ -1,8 +1,8 @@
 //! Clips from files: a man who goes over from a walk to a run and back, two clips that a graph blends; or a galloping horse.
 //!
-//! `cargo run --release --example clip_player`
-//! `cargo run --release --example clip_player -- --figure horse`
-//! `cargo run --release --example clip_player -- --screenshot frames --frames 12 --every 8`
+//! `cargo run --example clip_player`
+//! `cargo run --example clip_player -- --figure horse`
+//! `cargo run --example clip_player -- --screenshot frames --frames 12 --every 8`
 //!
 //! Up and down: more and less of the run. Space pauses.
 

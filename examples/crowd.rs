@@ -1,8 +1,8 @@
 //! Many men who walk, each in a time of his own, and how long a frame takes with them. Space pauses.
 //!
-//! `cargo run --release --example crowd -- 20`
-//! `cargo run --release --example crowd -- 20 --measure 300`
-//! `cargo run --release --example crowd -- 12 --screenshot crowd.png`
+//! `cargo run --example crowd -- 20`
+//! `cargo run --example crowd -- 20 --measure 300`
+//! `cargo run --example crowd -- 12 --screenshot crowd.png`
 
 mod pictures;
 mod scene;

@@ -1,7 +1,7 @@
 //! A figure of your own: a model file that `stick3d train` wrote, posed after a sketch, in a lit scene.
 //!
-//! `cargo run --release --example own_figure -- fox.stick3d fox_sketch.json`
-//! `cargo run --release --example own_figure -- fox.stick3d fox_sketch.json --screenshot fox.png`
+//! `cargo run --example own_figure -- fox.stick3d fox_sketch.json`
+//! `cargo run --example own_figure -- fox.stick3d fox_sketch.json --screenshot fox.png`
 
 mod scene;
 

@@ -1,7 +1,7 @@
 //! A motion that `stick3d animate` exported, played by Bevy alone: a game that only plays needs neither model nor plugin.
 //!
-//! `cargo run --release --example play_glb -- walk.glb`
-//! `cargo run --release --example play_glb -- walk.glb --at 0.5 --screenshot walk.png`
+//! `cargo run --example play_glb -- walk.glb`
+//! `cargo run --example play_glb -- walk.glb --at 0.5 --screenshot walk.png`
 
 mod scene;
 

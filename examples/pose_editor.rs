@@ -1,10 +1,10 @@
 //! The pose editor: choose a figure, draw it, lift the pen, see the body.
 //!
-//! `cargo run --release --example pose_editor`
-//! `cargo run --release --example pose_editor -- --figure horse`
-//! `cargo run --release --example pose_editor -- --sketch assets/sketches/wave.json --screenshot wave.png`
-//! `cargo run --release --example pose_editor -- --clip assets/clips/wave.clip.ron`
-//! `cargo run --release --example pose_editor -- --order guided`
+//! `cargo run --example pose_editor`
+//! `cargo run --example pose_editor -- --figure horse`
+//! `cargo run --example pose_editor -- --sketch assets/sketches/wave.json --screenshot wave.png`
+//! `cargo run --example pose_editor -- --clip assets/clips/wave.clip.ron`
+//! `cargo run --example pose_editor -- --order guided`
 
 use std::path::PathBuf;
 use std::process::ExitCode;

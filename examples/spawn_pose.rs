@@ -1,6 +1,6 @@
 //! The smallest game: one man in a drawn pose, and light to see him by.
 //!
-//! `cargo run --release --example spawn_pose`
+//! `cargo run --example spawn_pose`
 
 use bevy::prelude::*;
 use bevy_stick3d::prelude::*;

@@ -1,6 +1,7 @@
 //! Running a model at frame rate: sketch to latent, latent to mesh, on plain arrays.
 
 mod alternatives;
+mod decoding;
 mod flip;
 mod gaussian;
 mod hypotheses;
@@ -23,12 +24,11 @@ use stick3d_figure::mesh::NormalAdjacency;
 use stick3d_figure::sketch::{Sketch, SketchError};
 use thiserror::Error;
 
-use self::joint_map::JointMap;
+use self::decoding::Decoding;
 use self::perceptron::Perceptron;
-use self::proposal::{Body, Drawn};
+use self::proposal::Drawn;
 use self::refine::Refiner;
 use crate::file::ModelError;
-use crate::final_layer::{FinalLayer, FinalScratch};
 use crate::latent::{LongestEdges, Probe, Trust};
 use crate::model::Model;
 
@@ -67,11 +67,8 @@ const LARGEST: f32 = 1e9;
 pub struct Inference {
     figure: Figure,
     encoder2d: Perceptron,
-    head: Perceptron,
-    final_layer: FinalLayer,
-    final_scratch: FinalScratch,
+    decoding: Decoding,
     adjacency: NormalAdjacency,
-    joints: JointMap,
     probe: Probe,
     /// `None` where the joints are not linear in rotations or coefficients, or it is not known how answers are off.
     refiner: Option<Refiner>,
@@ -94,17 +91,12 @@ impl Inference {
         let vertex_count = model.vertex_count();
         let adjacency = NormalAdjacency::new(model.triangles(), vertex_count)
             .map_err(|error| ModelError::Metadata(error.to_string()))?;
-        let final_layer = model.final_layer().clone();
-        let final_scratch = final_layer.scratch();
         Ok(Self {
             figure: model.figure().clone(),
             encoder2d: Perceptron::new(model.encoder2d()),
-            head: Perceptron::new(model.head()),
+            decoding: Decoding::new(model),
             refiner: refiner(model),
-            joints: JointMap::new(model),
             probe: Probe::new(model)?,
-            final_layer,
-            final_scratch,
             adjacency,
             latent_len: model.latent_len(),
             input: vec![0.0; model.figure().input_len()],
@@ -129,7 +121,7 @@ impl Inference {
     /// How many vertices its meshes have.
     #[must_use]
     pub fn vertex_count(&self) -> usize {
-        self.final_layer.vertex_count()
+        self.decoding.vertex_count()
     }
 
     /// The likeliest latent of a sketch: that of the first of its [alternatives](Inference::infer).
@@ -181,14 +173,8 @@ impl Inference {
         self.take_marks(marks)?;
         let output = encoder2d_output(&mut self.encoder2d, &mut self.input, &self.figure, sketch)?;
         let hypotheses = Hypotheses::new(output, self.latent_len);
-        match (&mut self.refiner, &self.joints) {
-            (Some(refiner), JointMap::Linear(rows)) => {
-                let mut body = Body {
-                    head: &mut self.head,
-                    layer: &self.final_layer,
-                    scratch: &mut self.final_scratch,
-                    rows,
-                };
+        match (&mut self.refiner, self.decoding.body()) {
+            (Some(refiner), Some(mut body)) => {
                 let drawn = Drawn {
                     points: sketch.points(),
                     marks: &self.marks,
@@ -200,13 +186,7 @@ impl Inference {
             _ => {
                 for index in 0..hypotheses.len().min(Alternatives::MOST) {
                     let latent = hypotheses.latent(index);
-                    let code = coefficients(&mut self.head, self.latent_len, latent)?;
-                    self.joints.write(
-                        &self.final_layer,
-                        &mut self.final_scratch,
-                        code,
-                        &mut self.found,
-                    );
+                    self.decoding.write_joints(latent, &mut self.found)?;
                     let log_weight = f64::from(hypotheses.log_probability(index));
                     alternatives.add(latent, &self.found, log_weight);
                 }
@@ -226,14 +206,8 @@ impl Inference {
         self.take_marks(&[])?;
         let output = encoder2d_output(&mut self.encoder2d, &mut self.input, &self.figure, sketch)?;
         let hypotheses = Hypotheses::new(output, self.latent_len);
-        let (Some(refiner), JointMap::Linear(rows)) = (&mut self.refiner, &self.joints) else {
+        let (Some(refiner), Some(mut body)) = (&mut self.refiner, self.decoding.body()) else {
             return Ok(None);
-        };
-        let mut body = Body {
-            head: &mut self.head,
-            layer: &self.final_layer,
-            scratch: &mut self.final_scratch,
-            rows,
         };
         let drawn = Drawn {
             points: sketch.points(),
@@ -271,19 +245,13 @@ impl Inference {
         flipped: &mut [f32],
     ) -> Result<(), InferError> {
         require("the flipped latent", flipped.len(), self.latent_len)?;
-        coefficients(&mut self.head, self.latent_len, latent)?;
+        self.decoding.coefficients(latent)?;
         let mut alternatives = Alternatives::default();
         let sketch = sketch.into();
         self.infer(sketch, &mut alternatives)?;
         flipped.copy_from_slice(latent);
-        let (Some(refiner), JointMap::Linear(rows)) = (&mut self.refiner, &self.joints) else {
+        let (Some(refiner), Some(mut body)) = (&mut self.refiner, self.decoding.body()) else {
             return Ok(());
-        };
-        let mut body = Body {
-            head: &mut self.head,
-            layer: &self.final_layer,
-            scratch: &mut self.final_scratch,
-            rows,
         };
         flip::write_joints(&mut body, latent, &mut self.found);
         let depth = self.found[limb.end()].z - self.found[limb.base].z;
@@ -339,10 +307,7 @@ impl Inference {
         positions: &mut [[f32; 3]],
     ) -> Result<(), InferError> {
         require("the positions", positions.len(), self.vertex_count())?;
-        let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
-        self.final_layer
-            .evaluate(coefficients, &mut self.final_scratch, positions);
-        Ok(())
+        self.decoding.write_positions(latent, positions)
     }
 
     /// The joints of a latent's mesh, without making the mesh where the final layer is linear; metres, the space of
@@ -356,14 +321,7 @@ impl Inference {
     /// [`InferError::Length`], [`InferError::NotFinite`].
     pub fn joints(&mut self, latent: &[f32], joints: &mut [Vec3]) -> Result<(), InferError> {
         require("the joints", joints.len(), self.figure.joint_count())?;
-        let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
-        self.joints.write(
-            &self.final_layer,
-            &mut self.final_scratch,
-            coefficients,
-            joints,
-        );
-        Ok(())
+        self.decoding.write_joints(latent, joints)
     }
 
     /// How far a latent is to be trusted to be a body. Looks at some of the mesh's edges; see
@@ -381,7 +339,7 @@ impl Inference {
         latent: &[f32],
         longest: Option<&LongestEdges>,
     ) -> Result<Trust, InferError> {
-        let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
+        let coefficients = self.decoding.coefficients(latent)?;
         Ok(self.probe.trust(latent, coefficients, longest))
     }
 
@@ -392,7 +350,7 @@ impl Inference {
     ) -> Result<LongestEdges, InferError> {
         let mut longest = self.probe.longest_edges();
         for latent in latents {
-            let coefficients = coefficients(&mut self.head, self.latent_len, latent)?;
+            let coefficients = self.decoding.coefficients(latent)?;
             self.probe.allow(coefficients, &mut longest);
         }
         Ok(longest)
@@ -433,18 +391,6 @@ fn encoder2d_output<'a>(
     sketch.write_input_vector(figure, input)?;
     let output = encoder2d.run(input);
     require_finite("sketch's latent", output)?;
-    Ok(output)
-}
-
-fn coefficients<'a>(
-    head: &'a mut Perceptron,
-    latent_len: usize,
-    latent: &[f32],
-) -> Result<&'a [f32], InferError> {
-    require("the latent", latent.len(), latent_len)?;
-    require_finite("latent", latent)?;
-    let output = head.run(latent);
-    require_finite("latent's mesh", output)?;
     Ok(output)
 }
 

@@ -37,19 +37,28 @@ enum Answer {
     First,
     /// The one nearest to the truth.
     Best,
+    /// The first, but for the limb whose depth had best be the other way round, if any: what one click makes of it.
+    Flipped,
     /// What Encoder2D alone holds for likeliest, not pulled onto the drawing.
     Plain,
     /// The baseline's.
     Nearest,
 }
 
-const ANSWERS: [Answer; 4] = [Answer::First, Answer::Best, Answer::Plain, Answer::Nearest];
+const ANSWERS: [Answer; 5] = [
+    Answer::First,
+    Answer::Best,
+    Answer::Flipped,
+    Answer::Plain,
+    Answer::Nearest,
+];
 
 impl Answer {
     fn name(self) -> &'static str {
         match self {
             Self::First => "first answer",
             Self::Best => "best alternative",
+            Self::Flipped => "one limb flipped",
             Self::Plain => "network alone",
             Self::Nearest => "nearest neighbour",
         }
@@ -245,36 +254,26 @@ impl<'a> Bench<'a> {
         let sketch = &drawing.sketch;
         self.inference
             .infer(drawing.marked(), &mut self.alternatives)?;
-        let mut answers: Vec<Vec<Vec3>> = vec![];
-        for alternative in self.alternatives.as_slice() {
-            self.inference
-                .decode_positions(&alternative.latent, &mut self.positions)?;
-            answers.push(self.positions.iter().copied().map(Vec3::from).collect());
-        }
+        let alternatives = self.alternatives.as_slice().iter();
+        let latents: Vec<Vec<f32>> = alternatives.map(|found| found.latent.clone()).collect();
+        let answers = self.meshes(&latents)?;
         self.found.choice[way].add(answers.len() as f32);
-        let distance = |answer: &Vec<Vec3>| -> f64 {
-            let pairs = answer.iter().zip(&truth.0);
-            pairs.map(|(a, b)| f64::from(a.distance(*b))).sum()
-        };
-        let best = answers
-            .iter()
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let best = nearest_to(truth, &answers);
         let mut latent = vec![0.0; self.inference.latent_len()];
         self.inference.encode_plain(sketch, &mut latent)?;
-        self.inference
-            .decode_positions(&latent, &mut self.positions)?;
-        let plain: Vec<Vec3> = self.positions.iter().copied().map(Vec3::from).collect();
+        let plain = self.meshes(&[latent])?.pop();
+        let (mut flipped, mut nearest) = (None, None);
+        if self.setup.ways[way].in_full {
+            flipped = self.one_limb_flipped(drawing, &latents, truth)?;
+            nearest = Some(self.setup.baseline.nearest(figure, sketch)?);
+        }
         for (index, answer) in ANSWERS.iter().enumerate() {
-            let nearest;
             let mesh = match answer {
                 Answer::First => answers.first(),
                 Answer::Best => best,
-                Answer::Plain => Some(&plain),
-                Answer::Nearest if self.setup.ways[way].beside_baseline => {
-                    nearest = self.setup.baseline.nearest(figure, sketch)?;
-                    Some(&nearest)
-                }
-                Answer::Nearest => None,
+                Answer::Flipped => flipped.as_ref(),
+                Answer::Plain => plain.as_ref(),
+                Answer::Nearest => nearest.as_ref(),
             };
             if let Some(mesh) = mesh {
                 let joints = self.setup.model.regressor().joints(mesh);
@@ -287,6 +286,47 @@ impl<'a> Bench<'a> {
         }
         Ok(())
     }
+
+    /// The first answer, but for the limb whose depth had best be the other way round, if any.
+    fn one_limb_flipped(
+        &mut self,
+        drawing: &Drawing,
+        latents: &[Vec<f32>],
+        truth: &Body,
+    ) -> Result<Option<Vec<Vec3>>, EvalError> {
+        let Some(first) = latents.first() else {
+            return Ok(None);
+        };
+        let mut choice = vec![first.clone()];
+        for limb in self.setup.model.figure().limbs() {
+            let mut flipped = first.clone();
+            self.inference
+                .flip_limb(drawing.marked(), first, &limb, &mut flipped)?;
+            choice.push(flipped);
+        }
+        let meshes = self.meshes(&choice)?;
+        Ok(nearest_to(truth, &meshes).cloned())
+    }
+
+    fn meshes(&mut self, latents: &[Vec<f32>]) -> Result<Vec<Vec<Vec3>>, EvalError> {
+        let mesh = |latent: &Vec<f32>| {
+            self.inference
+                .decode_positions(latent, &mut self.positions)?;
+            Ok(self.positions.iter().copied().map(Vec3::from).collect())
+        };
+        latents.iter().map(mesh).collect()
+    }
+}
+
+/// The mesh of which vertices are nearest to those of the truth.
+fn nearest_to<'a>(truth: &Body, meshes: &'a [Vec<Vec3>]) -> Option<&'a Vec<Vec3>> {
+    let distance = |mesh: &Vec<Vec3>| -> f64 {
+        let pairs = mesh.iter().zip(&truth.0);
+        pairs.map(|(a, b)| f64::from(a.distance(*b))).sum()
+    };
+    meshes
+        .iter()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
 /// A body turned at random, and its sketches, one per way of drawing.

@@ -7,8 +7,9 @@
 //! ([`SketchNoise`](crate::dataset::SketchNoise)), and with one limb left out, filled in from the template as it is while a
 //! person draws.
 //!
-//! Of the model's alternatives the first answer is measured, and the best: the one nearest to the truth. Meshes are
-//! compared centred on the figure's root joint, without aligning rotation or scale. Only PA-MPJPE aligns, as its name says.
+//! Of the model's alternatives the first answer is measured, and the best: the one nearest to the truth. *One limb flipped*
+//! is what one click makes of the first: the limb whose depth had best be the other way round is. Meshes are compared
+//! centred on the figure's root joint, without aligning rotation or scale. Only PA-MPJPE aligns, as its name says.
 //! Beside them stands the [nearest neighbour](Baseline): the mesh among the library's training poses in the paper's 21
 //! turns (facing both ways where the figure does) whose sketch is closest. The bodies are also drawn with strokes in any
 //! order ([`Recognition`]).

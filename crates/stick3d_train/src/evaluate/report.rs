@@ -56,7 +56,8 @@ impl PartReport {
 /// The measures of one kind of answer to one way of drawing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Whose answer: `first answer`, `best alternative` (the one nearest to the truth), `network alone` (not refined), `nearest neighbour`.
+    /// Whose answer: `first answer`, `best alternative` (the one nearest to the truth), `one limb flipped` (the first but for
+    /// the limb whose depth had best be the other way round), `network alone` (not refined), `nearest neighbour`.
     pub answer: String,
     /// How it was drawn: `clean`, `jittered`, `scaled`, `both`, `incomplete` (a limb left out).
     pub drawn: String,

@@ -23,8 +23,8 @@ pub(super) struct Way {
     pub(super) noise: SketchNoise,
     /// Whether a limb is left out.
     pub(super) incomplete: bool,
-    /// Whether the nearest neighbour stands beside it.
-    pub(super) beside_baseline: bool,
+    /// Whether what takes long is measured, too: the nearest neighbour, and the first answer with one limb flipped.
+    pub(super) in_full: bool,
 }
 
 /// A test case as it was drawn.
@@ -60,18 +60,18 @@ impl Way {
                 bone_scale,
             },
             incomplete: false,
-            beside_baseline: false,
+            in_full: false,
         };
         let clean = way("clean", 0.0, 0.0);
         [
             Self {
-                beside_baseline: true,
+                in_full: true,
                 ..clean
             },
             way("jittered", jitter_m, 0.0),
             way("scaled", 0.0, BONE_SCALE),
             Self {
-                beside_baseline: true,
+                in_full: true,
                 ..way("both", jitter_m, BONE_SCALE)
             },
             Self {

@@ -1,14 +1,14 @@
 //! How Encoder2D's answers are off: what refinement is told of the latents that it may move them by.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 use stick3d_figure::sketch::Sketch;
 use stick3d_model::infer::Hypotheses;
 use stick3d_model::{Inference, Model, ModelParts};
 
 use super::TrainError;
-use crate::dataset::{Augmentation, BodySet, Rotations, drawn, random, turn_coefficients};
+use super::drawn_bodies::{DrawnBodies, DrawnBody};
+use crate::dataset::{BodySet, turn_coefficients};
 
 /// How many sketches are looked at, per number of a latent.
 const SKETCHES_PER_NUMBER: usize = 16;
@@ -19,34 +19,16 @@ const MOST_WAYS: usize = 64;
 /// [`answer_ways`](stick3d_model::latent::TrainingStatistics::answer_ways). Empty for a final layer that is not linear.
 pub(super) fn answer_ways(
     parts: &ModelParts,
-    bodies: &BodySet,
-    rotations: Rotations,
-    augmentation: Augmentation,
-    seed: u64,
+    drawn: DrawnBodies<'_>,
 ) -> Result<Vec<f32>, TrainError> {
     if parts.final_layer.matrix_columns() == 0 {
         return Ok(vec![]);
     }
-    let inference = Inference::new(&Model::new(parts.clone())?)?;
+    let model = Model::new(parts.clone())?;
     let draws = SKETCHES_PER_NUMBER * parts.metadata.latent_len;
-    let differences = (0..draws)
-        .into_par_iter()
-        .map_init(
-            || inference.clone(),
-            |inference, draw| {
-                let mut rng = random(seed, "answers", draw as u64);
-                let turn = rotations.sample(&mut rng);
-                let body = draw * bodies.len / draws;
-                let figure = &parts.metadata.figure;
-                let mut points = drawn(turn, bodies.joints_of(body));
-                augmentation
-                    .sample(&mut rng)
-                    .apply(figure, &mut points, &mut rng);
-                let sketch = Sketch::new(figure, points)?;
-                difference(parts, inference, &sketch, bodies, body, turn)
-            },
-        )
-        .collect::<Result<Vec<_>, TrainError>>()?;
+    let differences = drawn.each(&model, "answers", draws, |inference, body| {
+        difference(parts, inference, drawn.bodies, body)
+    })?;
     Ok(principal_ways(&differences))
 }
 
@@ -54,16 +36,20 @@ pub(super) fn answer_ways(
 fn difference(
     parts: &ModelParts,
     inference: &mut Inference,
-    sketch: &Sketch,
     bodies: &BodySet,
-    body: usize,
-    turn: Quat,
+    body: DrawnBody,
 ) -> Result<Vec<f32>, TrainError> {
-    let code = bodies.code_of(body);
+    let turn = body.turn;
+    let sketch = Sketch::new(&parts.metadata.figure, body.points)?;
+    let code = bodies.code_of(body.number);
     let mut turned = vec![0.0; code.len()];
     turn_coefficients(turn, code, &mut turned);
     let (truth, _) = parts.encoder3d.forward(&turned);
-    let joints: Vec<Vec3> = bodies.joints_of(body).iter().map(|j| turn * *j).collect();
+    let joints: Vec<Vec3> = bodies
+        .joints_of(body.number)
+        .iter()
+        .map(|j| turn * *j)
+        .collect();
     let output = parts
         .encoder2d
         .forward(&sketch.input_vector(&parts.metadata.figure)?);

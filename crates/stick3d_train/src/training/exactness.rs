@@ -1,52 +1,32 @@
 //! From when on a drawing is held for an exact one.
 
-use rayon::prelude::*;
 use stick3d_figure::sketch::Sketch;
-use stick3d_model::{Inference, Model};
+use stick3d_model::Model;
 
 use super::TrainError;
-use crate::dataset::{Augmentation, BodySet, Rotations, drawn, random};
+use super::drawn_bodies::DrawnBodies;
+use crate::dataset::Augmentation;
 
 /// How many bodies are drawn, exactly and crookedly.
 const BODIES: usize = 2000;
 
 /// The evidence half way between that of exact and that of crooked drawings of the training bodies (medians); see
 /// [`exact_from`](stick3d_model::latent::TrainingStatistics::exact_from). 0 for a model that does not refine.
-pub(super) fn exact_from(
-    model: &Model,
-    bodies: &BodySet,
-    rotations: Rotations,
-    augmentation: Augmentation,
-    seed: u64,
-) -> Result<f32, TrainError> {
-    let crooked = Augmentation {
-        clean_share: 0.0,
-        missing_share: 0.0,
-        ..augmentation
+pub(super) fn exact_from(model: &Model, drawn: DrawnBodies<'_>) -> Result<f32, TrainError> {
+    let crooked = DrawnBodies {
+        augmentation: Augmentation {
+            clean_share: 0.0,
+            ..drawn.augmentation
+        },
+        ..drawn
     };
-    let inference = Inference::new(model)?;
-    let pairs = (0..BODIES)
-        .into_par_iter()
-        .map_init(
-            || inference.clone(),
-            |inference, draw| {
-                let mut rng = random(seed, "exactness", draw as u64);
-                let turn = rotations.sample(&mut rng);
-                let body = draw * bodies.len / BODIES;
-                let figure = model.figure();
-                let exact = drawn(turn, bodies.joints_of(body));
-                let mut points = exact.clone();
-                crooked
-                    .sample(&mut rng)
-                    .apply(figure, &mut points, &mut rng);
-                let mut evidence = |points| -> Result<Option<f64>, TrainError> {
-                    Ok(inference.exact_over_crooked(&Sketch::new(figure, points)?)?)
-                };
-                Ok(evidence(exact)?.zip(evidence(points)?))
-            },
-        )
-        .collect::<Result<Option<Vec<_>>, TrainError>>()?;
-    let (exact, crooked) = pairs.unwrap_or_default().into_iter().unzip();
+    let pairs = crooked.each(model, "exactness", BODIES, |inference, body| {
+        let mut evidence = |points| -> Result<Option<f64>, TrainError> {
+            Ok(inference.exact_over_crooked(&Sketch::new(model.figure(), points)?)?)
+        };
+        Ok(evidence(body.exact)?.zip(evidence(body.points)?))
+    })?;
+    let (exact, crooked) = pairs.into_iter().flatten().unzip();
     Ok(between(exact, crooked) as f32)
 }
 

@@ -6,6 +6,7 @@ use stick3d_model::metadata::{
 use stick3d_model::weights::LinearWeights;
 use stick3d_model::{Model, ModelParts};
 
+use super::drawn_bodies::DrawnBodies;
 use super::exactness::exact_from;
 use super::losses::CodeScale;
 use super::networks::NetworkWeights;
@@ -69,26 +70,16 @@ pub(super) fn model(
         final_layer: material.shape.layer().clone(),
         statistics: None,
     };
-    parts.statistics = Some(statistics(
-        &parts,
-        &material.bodies,
-        config.rotations,
-        config.augmentation,
-        config.seed,
-    )?);
-    let model = Model::new(parts)?;
-    let (rotations, augmentation) = (config.rotations, config.augmentation);
-    let exact_from = exact_from(
-        &model,
-        &material.bodies,
-        rotations,
-        augmentation,
-        config.seed,
-    )?;
-    let mut parts = model.into_parts();
-    if let Some(statistics) = &mut parts.statistics {
-        statistics.exact_from = exact_from;
-    }
+    let drawn = DrawnBodies {
+        bodies: &material.bodies,
+        rotations: config.rotations,
+        augmentation: config.augmentation,
+        seed: config.seed,
+    };
+    let mut statistics = statistics(&parts, drawn)?;
+    parts.statistics = Some(statistics.clone());
+    statistics.exact_from = exact_from(&Model::new(parts.clone())?, drawn)?;
+    parts.statistics = Some(statistics);
     Ok(Model::new(parts)?)
 }
 

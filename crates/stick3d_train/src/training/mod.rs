@@ -12,6 +12,7 @@ pub(crate) mod adam;
 mod answers;
 pub(crate) mod checkpoint;
 mod config;
+mod drawn_bodies;
 mod error;
 mod exactness;
 mod export;

@@ -11,7 +11,8 @@ use stick3d_model::latent::TrainingStatistics;
 
 use super::TrainError;
 use super::answers::answer_ways;
-use crate::dataset::{Augmentation, BodySet, Rotations, drawn, random, turn_coefficients};
+use super::drawn_bodies::DrawnBodies;
+use crate::dataset::{BodySet, drawn, random, turn_coefficients};
 
 /// The most bodies that are looked at.
 const MOST_BODIES: usize = 4000;
@@ -24,11 +25,14 @@ const LEAST_VARIANCE: f64 = 1e-3;
 /// is trained on both.
 pub(super) fn statistics(
     parts: &ModelParts,
-    bodies: &BodySet,
-    rotations: Rotations,
-    augmentation: Augmentation,
-    seed: u64,
+    drawn: DrawnBodies<'_>,
 ) -> Result<TrainingStatistics, TrainError> {
+    let DrawnBodies {
+        bodies,
+        rotations,
+        seed,
+        ..
+    } = drawn;
     let picks: Vec<usize> = (0..bodies.len.min(MOST_BODIES))
         .map(|index| index * bodies.len / bodies.len.min(MOST_BODIES))
         .collect();
@@ -42,7 +46,7 @@ pub(super) fn statistics(
         })
         .collect::<Result<Vec<_>, _>>()?
         .concat();
-    let ways = answer_ways(parts, bodies, rotations, augmentation, seed)?;
+    let ways = answer_ways(parts, drawn)?;
     of_latents(&latents, longest_edges(parts, bodies, &picks), ways)
 }
 

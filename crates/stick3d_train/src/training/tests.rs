@@ -180,7 +180,7 @@ fn evaluation_measures_model_and_baseline_alike() {
     assert_eq!(report.parts.len(), 2);
     for (part, cases) in report.parts.iter().zip([6, 24]) {
         assert_eq!((part.cases, part.any_order.poses), (cases, cases));
-        assert_eq!(part.rows.len(), 5 + 5 + 5 + 2, "{:?}", part.rows);
+        assert_eq!(part.rows.len(), 5 + 5 + 2 + 5 + 2, "{:?}", part.rows);
         for row in &part.rows {
             let metrics = &row.metrics;
             assert_eq!(metrics.cases, cases);
@@ -191,6 +191,9 @@ fn evaluation_measures_model_and_baseline_alike() {
             let [first, best] = ["first answer", "best alternative"]
                 .map(|answer| part.row(answer, way).unwrap().metrics.vertex_mean_cm);
             assert!(best <= first);
+            if let Some(flipped) = part.row("one limb flipped", way) {
+                assert!(flipped.metrics.vertex_mean_cm <= first);
+            }
         }
     }
     // The baseline has the natural poses among its own here, in turns up to 15° and more away.
