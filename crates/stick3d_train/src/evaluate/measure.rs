@@ -3,26 +3,21 @@
 use std::time::Instant;
 
 use glam::{Quat, Vec2, Vec3};
-use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use stick3d_figure::figure::Figure;
 use stick3d_figure::sketch::Sketch;
 use stick3d_model::{Alternatives, Inference, Model};
 
 use super::recognition::readable_flat_pose;
 use super::report::{Latency, PartReport, Report, Row, TestSet};
 use super::spread::Spread;
-use super::ways::{CROOKED, Drawing, WAYS, Way};
+use super::ways::{Body, CROOKED, Drawing, WAYS, Way, drawn_in_all_ways};
 use super::{Baseline, Collector, EvalConfig, EvalError, Recognition};
-use crate::dataset::{Rotations, drawn, random, rounded};
+use crate::dataset::{drawn, random, rounded};
 use crate::training::Progress;
 
 /// Cases that are measured one after the other. What is found is put together group by group, in order, so that sums do not
 /// depend on which thread was first.
 const GROUP: usize = 10;
-
-/// A mesh centred on the root joint, and its joints.
-pub(super) type Body = (Vec<Vec3>, Vec<Vec3>);
 
 /// A part of the test set: bodies, each of which is turned once.
 pub(super) struct Part<C> {
@@ -327,25 +322,6 @@ fn nearest_to<'a>(truth: &Body, meshes: &'a [Vec<Vec3>]) -> Option<&'a Vec<Vec3>
     meshes
         .iter()
         .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-}
-
-/// A body turned at random, and its sketches, one per way of drawing.
-fn drawn_in_all_ways(
-    figure: &Figure,
-    ways: &[Way; WAYS],
-    (mesh, joints): &Body,
-    case: usize,
-    rng: &mut ChaCha8Rng,
-) -> Result<(Body, Vec<Drawing>), EvalError> {
-    let turn = Rotations::test_of(&figure.views).sample(rng);
-    let turned = |points: &[Vec3]| points.iter().map(|point| turn * *point).collect();
-    let truth: Body = (turned(mesh), turned(joints));
-    let flat: Vec<Vec2> = drawn(Quat::IDENTITY, &truth.1);
-    let sketches = ways
-        .iter()
-        .map(|way| way.draw(figure, flat.clone(), case, rng))
-        .collect::<Result<_, _>>()?;
-    Ok((truth, sketches))
 }
 
 /// The first sketches of every part, `count` in all, named after part, number and way: clean ones, and every third as

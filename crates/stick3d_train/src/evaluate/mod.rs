@@ -48,7 +48,8 @@ use crate::dataset::{PoseStream, centre, posed};
 use crate::meshes::{MeshSet, NamedMesh};
 use crate::rig::{Pose, Rig};
 use crate::training::Progress;
-use measure::{Body, Part, measure};
+use measure::{Part, measure};
+use ways::Body;
 
 /// What a measurement is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

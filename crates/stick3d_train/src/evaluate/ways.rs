@@ -1,18 +1,22 @@
-//! The ways in which every test case is drawn.
+//! How every test case is turned, and the ways in which it is drawn.
 
-use glam::Vec2;
+use glam::{Quat, Vec2, Vec3};
 use rand::Rng;
+use rand_chacha::ChaCha8Rng;
 use stick3d_figure::complete_from_template;
 use stick3d_figure::figure::Figure;
 use stick3d_figure::sketch::{Sketch, SketchError};
 use stick3d_model::{JointMark, MarkedSketch};
 
-use crate::dataset::SketchNoise;
+use crate::dataset::{Rotations, SketchNoise, drawn};
 use crate::size::relative_size;
 
 /// How far joints are jittered on a figure of usual size, metres, and how much bones are scaled.
 const JITTER_M: f32 = 0.025;
 const BONE_SCALE: f32 = 0.15;
+
+/// A mesh centred on the root joint, and its joints.
+pub(super) type Body = (Vec<Vec3>, Vec<Vec3>);
 
 /// A way to draw a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,6 +117,25 @@ impl Way {
             marks: vec![],
         })
     }
+}
+
+/// A body turned at random, and its sketches, one per way of drawing.
+pub(super) fn drawn_in_all_ways(
+    figure: &Figure,
+    ways: &[Way; WAYS],
+    (mesh, joints): &Body,
+    case: usize,
+    rng: &mut ChaCha8Rng,
+) -> Result<(Body, Vec<Drawing>), SketchError> {
+    let turn = Rotations::test_of(&figure.views).sample(rng);
+    let turned = |points: &[Vec3]| points.iter().map(|point| turn * *point).collect();
+    let truth: Body = (turned(mesh), turned(joints));
+    let flat: Vec<Vec2> = drawn(Quat::IDENTITY, &truth.1);
+    let sketches = ways
+        .iter()
+        .map(|way| way.draw(figure, flat.clone(), case, rng))
+        .collect::<Result<_, _>>()?;
+    Ok((truth, sketches))
 }
 
 #[cfg(test)]
