@@ -221,13 +221,16 @@ fn a_limb_that_was_not_drawn_says_nothing_and_a_pinned_joint_holds_the_body() {
             let found: Vec<Vec3> = rest.iter().map(|joint| joints[*joint]).collect();
             off_the_drawing(human, &drawn, &found)
         };
-        drawn_off += of_rest(&marked(&mut inference, &wrong, &[], JointMark::Drawn));
-        guessed_off += of_rest(&marked(
+        let drawn = of_rest(&marked(&mut inference, &wrong, &[], JointMark::Drawn));
+        let guessed = of_rest(&marked(
             &mut inference,
             &wrong,
             &limb.joints,
             JointMark::Guessed,
         ));
+        assert!(guessed < drawn, "{guessed} {drawn}");
+        drawn_off += drawn;
+        guessed_off += guessed;
         // A crooked drawing whose hand is meant: the other arm is drawn far too long.
         let mut points = sketch.points().to_vec();
         let other = human.mirror_of(hand);
@@ -249,7 +252,7 @@ fn a_limb_that_was_not_drawn_says_nothing_and_a_pinned_joint_holds_the_body() {
         ));
         pinned_off += held - free;
     }
-    assert!(guessed_off < 0.8 * drawn_off, "{guessed_off} {drawn_off}");
+    assert!(guessed_off < 0.85 * drawn_off, "{guessed_off} {drawn_off}");
     assert!(pinned_off < 0.0, "{pinned_off}");
     let sketch = Sketch::template(human);
     let marks = &[JointMark::Drawn; 3];
