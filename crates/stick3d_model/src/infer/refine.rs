@@ -70,17 +70,22 @@ impl Refiner {
         }
     }
 
+    /// How many of the hypotheses are looked at.
+    fn looked_at(&self, hypotheses: &Hypotheses<'_>) -> usize {
+        hypotheses.len().min(self.crooked.len() - 1)
+    }
+
     /// How many proposals there are: one per hypothesis, and where those are several, their mean.
     fn count(&self, hypotheses: &Hypotheses<'_>) -> usize {
-        let several = hypotheses.len().min(self.crooked.len() - 1);
+        let several = self.looked_at(hypotheses);
         several + usize::from(several > 1)
     }
 
     /// Puts proposals at Encoder2D's answers, the last of several at their mean.
     fn begin(&mut self, hypotheses: &Hypotheses<'_>, drawn: Drawn<'_>, body: &mut Body<'_>) {
-        let count = self.count(hypotheses);
+        let (several, count) = (self.looked_at(hypotheses), self.count(hypotheses));
         for (index, proposal) in self.crooked[..count].iter_mut().enumerate() {
-            proposal.begin(|start| match index + 1 < count || count == 1 {
+            proposal.begin(|start| match index < several {
                 true => start.copy_from_slice(hypotheses.latent(index)),
                 false => hypotheses.write_mean(start),
             });

@@ -259,7 +259,9 @@ impl<'a> Bench<'a> {
         let plain = self.meshes(&[latent])?.pop();
         let (mut flipped, mut nearest) = (None, None);
         if self.setup.ways[way].in_full {
-            flipped = self.one_limb_flipped(drawing, &latents, truth)?;
+            if let Some(first) = latents.first() {
+                flipped = self.one_limb_flipped(drawing, first, truth)?;
+            }
             nearest = Some(self.setup.baseline.nearest(figure, sketch)?);
         }
         for (index, answer) in ANSWERS.iter().enumerate() {
@@ -286,15 +288,12 @@ impl<'a> Bench<'a> {
     fn one_limb_flipped(
         &mut self,
         drawing: &Drawing,
-        latents: &[Vec<f32>],
+        first: &[f32],
         truth: &Body,
     ) -> Result<Option<Vec<Vec3>>, EvalError> {
-        let Some(first) = latents.first() else {
-            return Ok(None);
-        };
-        let mut choice = vec![first.clone()];
+        let mut choice = vec![first.to_vec()];
         for limb in self.setup.model.figure().limbs() {
-            let mut flipped = first.clone();
+            let mut flipped = first.to_vec();
             self.inference
                 .flip_limb(drawing.marked(), first, &limb, &mut flipped)?;
             choice.push(flipped);
